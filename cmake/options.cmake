@@ -1,0 +1,21 @@
+# Flags of every target, as one interface library.
+add_library(bagnold_options INTERFACE)
+target_compile_features(bagnold_options INTERFACE cxx_std_20)
+target_include_directories(bagnold_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+# No -ffast-math anywhere: results must be reproducible. These two change no result, they only say
+# that nobody reads errno after sqrt or installs floating-point traps, which lets loops vectorise.
+target_compile_options(bagnold_options INTERFACE -Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math)
+if(BAGNOLD_NATIVE)
+  target_compile_options(bagnold_options INTERFACE -march=native)
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Debug")
+  target_compile_options(bagnold_options INTERFACE -ffp-contract=off)
+endif()
+if(BAGNOLD_SANITIZE)
+  target_compile_options(bagnold_options INTERFACE -fsanitize=${BAGNOLD_SANITIZE} -fno-omit-frame-pointer -g)
+  target_link_options(bagnold_options INTERFACE -fsanitize=${BAGNOLD_SANITIZE})
+endif()
+if(BAGNOLD_COVERAGE)
+  target_compile_options(bagnold_options INTERFACE --coverage -O0 -g)
+  target_link_options(bagnold_options INTERFACE --coverage)
+endif()
