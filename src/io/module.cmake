@@ -1,0 +1,5 @@
+find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(nlohmann_json REQUIRED)
+target_include_directories(bagnold_io SYSTEM PRIVATE ${HDF5_C_INCLUDE_DIRS})
+target_compile_definitions(bagnold_io PRIVATE ${HDF5_C_DEFINITIONS})
+target_link_libraries(bagnold_io PUBLIC nlohmann_json::nlohmann_json PRIVATE ${HDF5_C_LIBRARIES})
