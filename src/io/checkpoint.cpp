@@ -72,11 +72,11 @@ std::vector<std::function<void()>> read_state(const H5File& file, const std::vec
   if (!file.has_attribute("/", "complete"))
     throw IoError(fmt::format("{}: error: the checkpoint is incomplete", file.path().string()));
   if (const auto found = file.int_attribute("/", "format"); found != format_version)
-    throw InputError(fmt::format("{}: error: checkpoint format {}, this program reads {}",
-                                 file.path().string(), found, format_version));
+    throw InputError(fmt::format("{}: error: checkpoint format {}, this program reads {}", file.path().string(), found,
+                                 format_version));
   const auto mismatch = [&](const std::string& what) {
-    return InputError(fmt::format("{}: error: {}: the checkpoint belongs to another model or version",
-                                  file.path().string(), what));
+    return InputError(
+        fmt::format("{}: error: {}: the checkpoint belongs to another model or version", file.path().string(), what));
   };
 
   std::vector<std::function<void()>> take_over;
@@ -87,8 +87,9 @@ std::vector<std::function<void()>> read_state(const H5File& file, const std::vec
         [&](auto* target) {
           using T = std::remove_pointer_t<decltype(target)>;
           if constexpr (is_vector<T>) {
-            take_over.push_back([target, values = read_array<typename T::value_type>(
-                                             file, dataset)]() mutable { *target = std::move(values); });
+            take_over.push_back([target, values = read_array<typename T::value_type>(file, dataset)]() mutable {
+              *target = std::move(values);
+            });
           } else {
             const auto values = read_array<T>(file, dataset);
             if (values.size() != 1) throw mismatch(fmt::format("'{}' is not a single number", name));

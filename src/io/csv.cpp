@@ -21,8 +21,7 @@ std::string join(const std::vector<Column>& columns, std::string Column::*part) 
 }
 
 std::string header_of(const std::vector<Column>& columns, CsvHeader header) {
-  return join(columns, &Column::name) +
-         (header == CsvHeader::names_and_units ? join(columns, &Column::unit) : "");
+  return join(columns, &Column::name) + (header == CsvHeader::names_and_units ? join(columns, &Column::unit) : "");
 }
 
 void append_number(std::string& line, double value) {
@@ -61,25 +60,22 @@ std::vector<std::string_view> lines(std::string_view text) {
 
 }  // namespace
 
-CsvWriter::CsvWriter(std::filesystem::path path, std::size_t columns)
-    : path_(std::move(path)), columns_(columns) {
+CsvWriter::CsvWriter(std::filesystem::path path, std::size_t columns) : path_(std::move(path)), columns_(columns) {
   out_.open(path_, std::ios::binary | std::ios::app);
   if (!out_) throw IoError(fmt::format("{}: error: cannot open for writing", path_.string()));
 }
 
-CsvWriter CsvWriter::create(const std::filesystem::path& path, const std::vector<Column>& columns,
-                            CsvHeader header) {
+CsvWriter CsvWriter::create(const std::filesystem::path& path, const std::vector<Column>& columns, CsvHeader header) {
   write_file(path, header_of(columns, header));
   return {path, columns.size()};
 }
 
-CsvWriter CsvWriter::resume(const std::filesystem::path& path, const std::vector<Column>& columns,
-                            double until, CsvHeader header) {
+CsvWriter CsvWriter::resume(const std::filesystem::path& path, const std::vector<Column>& columns, double until,
+                            CsvHeader header) {
   if (!std::filesystem::exists(path)) return create(path, columns, header);
   const auto text = read_file(path);
   auto kept = header_of(columns, header);
-  if (!text.starts_with(kept))
-    throw InputError(fmt::format("{}: error: the table has other columns", path.string()));
+  if (!text.starts_with(kept)) throw InputError(fmt::format("{}: error: the table has other columns", path.string()));
   for (const auto line : lines(std::string_view(text).substr(kept.size()))) {
     const auto cells = split(line);
     const auto t = number(cells[0]);
@@ -91,8 +87,7 @@ CsvWriter CsvWriter::resume(const std::filesystem::path& path, const std::vector
 
 void CsvWriter::row(std::span<const double> values) {
   if (values.size() != columns_)
-    throw IoError(
-        fmt::format("{}: error: {} values for {} columns", path_.string(), values.size(), columns_));
+    throw IoError(fmt::format("{}: error: {} values for {} columns", path_.string(), values.size(), columns_));
   std::string line;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (k > 0) line += ',';
@@ -121,9 +116,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
   write_file(path, text);
 }
 
-bool CsvTable::has(const std::string& name) const {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
+bool CsvTable::has(const std::string& name) const { return std::find(names.begin(), names.end(), name) != names.end(); }
 
 const std::vector<double>& CsvTable::operator[](const std::string& name) const {
   const auto at = std::find(names.begin(), names.end(), name);
@@ -146,12 +139,11 @@ CsvTable read_csv(const std::filesystem::path& path, CsvHeader header) {
   for (std::size_t i = heads; i < all.size(); ++i) {
     const auto cells = split(all[i]);
     if (cells.size() != table.names.size())
-      throw IoError(fmt::format("{}:{}: error: {} cells, expected {}", path.string(), i + 1, cells.size(),
-                                table.names.size()));
+      throw IoError(
+          fmt::format("{}:{}: error: {} cells, expected {}", path.string(), i + 1, cells.size(), table.names.size()));
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const auto value = number(cells[k]);
-      if (!value)
-        throw IoError(fmt::format("{}:{}: error: '{}' is not a number", path.string(), i + 1, cells[k]));
+      if (!value) throw IoError(fmt::format("{}:{}: error: '{}' is not a number", path.string(), i + 1, cells[k]));
       table.cells[k].push_back(*value);
     }
   }

@@ -46,8 +46,7 @@ struct CsvTable {
   std::vector<std::vector<double>> cells;  // cells[k] is column k
   std::size_t rows() const { return cells.empty() ? 0 : cells[0].size(); }
   bool has(const std::string& name) const;
-  const std::vector<double>& operator[](
-      const std::string& name) const;  // throws IoError naming the known columns
+  const std::vector<double>& operator[](const std::string& name) const;  // throws IoError naming the known columns
 };
 CsvTable read_csv(const std::filesystem::path& path, CsvHeader header = CsvHeader::names);
 

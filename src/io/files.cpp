@@ -52,8 +52,7 @@ void sync_to_disk(const std::filesystem::path& path) {
   const int error = errno;
   ::close(file);
   errno = error;
-  if (result != 0 && error != EINVAL)
-    fail(path, "cannot synchronise to disk");  // EINVAL: not that kind of file
+  if (result != 0 && error != EINVAL) fail(path, "cannot synchronise to disk");  // EINVAL: not that kind of file
 }
 
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -52,15 +52,14 @@ Finished run_gnuplot(const std::string& argument) {
 std::string terminal(const std::filesystem::path& output, const PlotSize& size) {
   const auto kind = output.extension();
   if (kind == ".svg")
-    return fmt::format("set terminal svg size {},{} dynamic enhanced font 'sans,13' background '#ffffff'\n",
-                       size.width, size.height);
+    return fmt::format("set terminal svg size {},{} dynamic enhanced font 'sans,13' background '#ffffff'\n", size.width,
+                       size.height);
   if (kind == ".png")
     return fmt::format("set terminal pngcairo size {},{} enhanced font 'sans,10'\n", size.width, size.height);
   if (kind == ".pdf")
     return fmt::format("set terminal pdfcairo size {},{} enhanced font 'sans,10'\n", size.width / 72.0,
                        size.height / 72.0);
-  throw IoError(
-      fmt::format("{}: error: expected a figure name ending in .svg, .png or .pdf", output.string()));
+  throw IoError(fmt::format("{}: error: expected a figure name ending in .svg, .png or .pdf", output.string()));
 }
 
 std::string data_block(const PlotData& data) {
@@ -104,8 +103,8 @@ void plot(const std::filesystem::path& output, const std::string& script, const 
   if (!finished.started)
     throw IoError(fmt::format("{}: error: gnuplot is not installed (package gnuplot-nox)", output.string()));
   if (finished.status != 0)
-    throw IoError(fmt::format("{}: error: gnuplot failed:\n{}(script kept as {})", output.string(),
-                              finished.output, file.string()));
+    throw IoError(fmt::format("{}: error: gnuplot failed:\n{}(script kept as {})", output.string(), finished.output,
+                              file.string()));
   std::filesystem::remove(file);
 }
 

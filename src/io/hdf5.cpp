@@ -77,8 +77,8 @@ struct H5File::Impl {
   [[noreturn]] void fail(const std::string& object, const std::string& what) const {
     const auto reason = library_reason();
     H5Eclear2(H5E_DEFAULT);
-    throw IoError(fmt::format("{}: error: {}{}{}", path.string(), object.empty() ? "" : "'" + object + "': ",
-                              what, reason.empty() ? "" : " (" + reason + ")"));
+    throw IoError(fmt::format("{}: error: {}{}{}", path.string(), object.empty() ? "" : "'" + object + "': ", what,
+                              reason.empty() ? "" : " (" + reason + ")"));
   }
 
   bool exists(const std::string& object) const {
@@ -138,8 +138,7 @@ struct H5File::Impl {
     if (H5Aexists(target, name.c_str()) > 0) H5Adelete(target, name.c_str());
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle attribute(H5Acreate2(target, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    if (attribute < 0 || H5Awrite(attribute, type, value) < 0)
-      fail(object, "cannot write the attribute " + name);
+    if (attribute < 0 || H5Awrite(attribute, type, value) < 0) fail(object, "cannot write the attribute " + name);
   }
 
   Handle open_attribute(const std::string& object, const std::string& name, H5T_class_t kind) const {
@@ -222,8 +221,7 @@ void H5File::write(const std::string& dataset, std::span<const T> data, Dims dim
   } else {
     if (dims.empty()) dims = {data.size()};
     if (count(dims) != data.size())
-      impl_->fail(dataset,
-                  fmt::format("{} values do not fill the given shape of {}", data.size(), count(dims)));
+      impl_->fail(dataset, fmt::format("{} values do not fill the given shape of {}", data.size(), count(dims)));
     impl_->write(dataset, native_type<T>(), data.data(), dims, compress);
   }
 }
@@ -234,14 +232,12 @@ std::vector<T> H5File::read(const std::string& dataset) const {
   const auto shape = impl_->dims(set, dataset);
   const Handle stored(H5Dget_type(set), H5Tclose);
   using Number = std::conditional_t<std::is_same_v<T, Vec3>, double, T>;
-  const bool stored_integer = H5Tget_class(stored) == H5T_INTEGER,
-             stored_float = H5Tget_class(stored) == H5T_FLOAT;
+  const bool stored_integer = H5Tget_class(stored) == H5T_INTEGER, stored_float = H5Tget_class(stored) == H5T_FLOAT;
   const bool fits = std::is_integral_v<Number> ? stored_integer && H5Tget_size(stored) <= sizeof(Number)
                     : stored_float             ? H5Tget_size(stored) <= sizeof(Number)
                                                : stored_integer && H5Tget_size(stored) < sizeof(Number);
   if (!fits) impl_->fail(dataset, "the numbers stored do not fit the type asked for");
-  if (std::is_same_v<T, Vec3> && (shape.empty() || shape.back() != 3))
-    impl_->fail(dataset, "expected n x 3 numbers");
+  if (std::is_same_v<T, Vec3> && (shape.empty() || shape.back() != 3)) impl_->fail(dataset, "expected n x 3 numbers");
   std::vector<T> data(std::is_same_v<T, Vec3> ? count(shape) / 3 : count(shape));
   if (H5Dread(set, native_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) < 0)
     impl_->fail(dataset, "cannot read");
@@ -261,9 +257,7 @@ template std::vector<std::int64_t> H5File::read(const std::string&) const;
 template std::vector<std::uint8_t> H5File::read(const std::string&) const;
 template std::vector<Vec3> H5File::read(const std::string&) const;
 
-Dims H5File::dims(const std::string& dataset) const {
-  return impl_->dims(impl_->open_dataset(dataset), dataset);
-}
+Dims H5File::dims(const std::string& dataset) const { return impl_->dims(impl_->open_dataset(dataset), dataset); }
 
 bool H5File::exists(const std::string& object) const { return impl_->exists(object); }
 

@@ -44,11 +44,9 @@ class H5File {
   // Writes an array, row-major, of the shape `dims` (default: one dimension; n x 3 for Vec3). Groups on the
   // way are created; an array already there is replaced. T: double, float, int32, int64, uint8, Vec3.
   template <class T>
-  void write(const std::string& dataset, std::span<const T> data, Dims dims = {},
-             Compress compress = Compress::no);
+  void write(const std::string& dataset, std::span<const T> data, Dims dims = {}, Compress compress = Compress::no);
   template <class T>
-  void write(const std::string& dataset, const std::vector<T>& data, Dims dims = {},
-             Compress compress = Compress::no) {
+  void write(const std::string& dataset, const std::vector<T>& data, Dims dims = {}, Compress compress = Compress::no) {
     write(dataset, std::span<const T>(data), std::move(dims), compress);
   }
 

@@ -21,8 +21,7 @@ void write_provenance(H5File& file, const Provenance& provenance) {
 
 Provenance read_provenance(const H5File& file) {
   return {file.string_attribute("/", "version"), file.string_attribute("/", "git_hash"),
-          file.string_attribute("/", "compiler"), file.int_attribute("/", "seed"),
-          file.string_attribute("/", "input")};
+          file.string_attribute("/", "compiler"), file.int_attribute("/", "seed"), file.string_attribute("/", "input")};
 }
 
 }  // namespace bagnold::io

@@ -67,21 +67,21 @@ void append_array(std::string& xml, std::string_view name, std::span<const T> va
   std::memcpy(block.data(), &bytes, sizeof bytes);
   if (bytes > 0) std::memcpy(block.data() + sizeof bytes, values.data(), bytes);
   fmt::format_to(std::back_inserter(xml),
-                 "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n",
-                 vtk_type<T>(), escaped(name), std::is_same_v<T, Vec3> ? 3 : 1);
+                 "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n", vtk_type<T>(),
+                 escaped(name), std::is_same_v<T, Vec3> ? 3 : 1);
   xml += base64(block);
   xml += "\n</DataArray>\n";
 }
 
-void append_data(std::string& xml, std::string_view section, const std::vector<VtkArray>& arrays,
-                 std::size_t expected, const std::filesystem::path& path) {
+void append_data(std::string& xml, std::string_view section, const std::vector<VtkArray>& arrays, std::size_t expected,
+                 const std::filesystem::path& path) {
   fmt::format_to(std::back_inserter(xml), "<{}>\n", section);
   for (const auto& array : arrays)
     std::visit(
         [&](const auto& values) {
           if (values.size() != expected)
-            throw IoError(fmt::format("{}: error: array '{}' has {} values, expected {}", path.string(),
-                                      array.name, values.size(), expected));
+            throw IoError(fmt::format("{}: error: array '{}' has {} values, expected {}", path.string(), array.name,
+                                      values.size(), expected));
           append_array(xml, array.name, values);
         },
         array.data);
@@ -162,25 +162,22 @@ void write_vtp_lines(const std::filesystem::path& path, std::span<const std::arr
   write_file(path, document("PolyData", "", xml));
 }
 
-void write_vti(const std::filesystem::path& path, const ImageGrid& grid,
-               const std::vector<VtkArray>& cell_data) {
+void write_vti(const std::filesystem::path& path, const ImageGrid& grid, const std::vector<VtkArray>& cell_data) {
   const auto& [origin, spacing, cells] = grid;
   const auto extent = fmt::format("0 {} 0 {} 0 {}", cells[0], cells[1], cells[2]);
   std::string xml = fmt::format("<Piece Extent=\"{}\">\n", extent);
   append_data(xml, "CellData", cell_data, static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), path);
   xml += "</Piece>\n";
-  write_file(path,
-             document("ImageData",
-                      fmt::format(" WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\"", extent,
-                                  origin.x, origin.y, origin.z, spacing.x, spacing.y, spacing.z),
-                      xml));
+  write_file(path, document("ImageData",
+                            fmt::format(" WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\"", extent,
+                                        origin.x, origin.y, origin.z, spacing.x, spacing.y, spacing.z),
+                            xml));
 }
 
 void write_vts(const std::filesystem::path& path, const std::array<std::int64_t, 3>& points,
                std::span<const Vec3> nodes, const std::vector<VtkArray>& point_data) {
   const auto n = static_cast<std::size_t>(points[0] * points[1] * points[2]);
-  if (nodes.size() != n)
-    throw IoError(fmt::format("{}: error: {} nodes, expected {}", path.string(), nodes.size(), n));
+  if (nodes.size() != n) throw IoError(fmt::format("{}: error: {} nodes, expected {}", path.string(), nodes.size(), n));
   const auto extent = fmt::format("0 {} 0 {} 0 {}", points[0] - 1, points[1] - 1, points[2] - 1);
   std::string xml = fmt::format("<Piece Extent=\"{}\">\n", extent);
   append_data(xml, "PointData", point_data, n, path);
@@ -210,8 +207,8 @@ PvdSeries PvdSeries::resume(const std::filesystem::path& path, double until) {
     if (std::from_chars(begin, text.data() + text.size(), time).ec != std::errc() || end == std::string::npos)
       throw IoError(fmt::format("{}: error: an entry of the .pvd collection cannot be read", path.string()));
     if (time > until) continue;
-    series.entries_.emplace_back(
-        time, unescaped(text.substr(file + before_file.size(), end - file - before_file.size())));
+    series.entries_.emplace_back(time,
+                                 unescaped(text.substr(file + before_file.size(), end - file - before_file.size())));
   }
   series.write();
   return series;
@@ -225,8 +222,7 @@ void PvdSeries::add(double time, const std::string& file) {
 void PvdSeries::write() const {
   std::string xml;
   for (const auto& [time, file] : entries_)
-    fmt::format_to(std::back_inserter(xml), "<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time,
-                   escaped(file));
+    fmt::format_to(std::back_inserter(xml), "<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time, escaped(file));
   write_file(path_,
              "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
              "byte_order=\"LittleEndian\">\n<Collection>\n" +

@@ -38,8 +38,7 @@ struct ImageGrid {
   Vec3 spacing;  // size of a cell
   std::array<std::int64_t, 3> cells;
 };
-void write_vti(const std::filesystem::path& path, const ImageGrid& grid,
-               const std::vector<VtkArray>& cell_data);
+void write_vti(const std::filesystem::path& path, const ImageGrid& grid, const std::vector<VtkArray>& cell_data);
 
 // .vts: a grid of points[0] x points[1] x points[2] nodes anywhere in space, x varies fastest; for example a
 // surface draped over terrain (points[2] = 1).

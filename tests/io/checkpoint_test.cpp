@@ -31,8 +31,7 @@ struct State {
   }
 };
 
-const State blank{
-    .radius = {}, .x = {{0, 0, 0}}, .species = {}, .id = {}, .touching = {1}, .t = 0, .step = 0};
+const State blank{.radius = {}, .x = {{0, 0, 0}}, .species = {}, .id = {}, .touching = {1}, .t = 0, .step = 0};
 
 State at_step(std::int64_t step) {
   State state;
@@ -42,9 +41,7 @@ State at_step(std::int64_t step) {
   return state;
 }
 
-void write(const Scratch& dir, State state) {
-  write_checkpoint(dir.path, state.arrays(), provenance(1, "seed = 1\n"));
-}
+void write(const Scratch& dir, State state) { write_checkpoint(dir.path, state.arrays(), provenance(1, "seed = 1\n")); }
 
 void overwrite_middle(const std::filesystem::path& path, std::size_t from, std::size_t bytes) {
   auto content = read_file(path);
@@ -119,12 +116,12 @@ TEST(Checkpoint, AnInterruptedWriteLeavesTheOldOnes) {
 TEST(Checkpoint, NothingToReadIsAnIoErrorAndChangesNothing) {
   const Scratch dir;
   auto state = blank;
-  EXPECT_TRUE(contains(error_of<IoError>([&] { read_checkpoint(dir.path, state.arrays()); }),
-                       "no checkpoint can be read"));
+  EXPECT_TRUE(
+      contains(error_of<IoError>([&] { read_checkpoint(dir.path, state.arrays()); }), "no checkpoint can be read"));
   write(dir, at_step(1));
   overwrite_middle(dir / "checkpoint.h5", 0, 64);
-  EXPECT_TRUE(contains(error_of<IoError>([&] { read_checkpoint(dir.path, state.arrays()); }),
-                       "not a readable HDF5 file"));
+  EXPECT_TRUE(
+      contains(error_of<IoError>([&] { read_checkpoint(dir.path, state.arrays()); }), "not a readable HDF5 file"));
   EXPECT_EQ(state, blank);
 }
 
@@ -135,12 +132,11 @@ TEST(Checkpoint, AnotherModelsStateIsAnInputErrorNamingTheArray) {
   std::vector<double> extra;
   auto more = state.arrays();
   more.push_back({"grains/charge", &extra});
-  EXPECT_TRUE(
-      contains(error_of<InputError>([&] { read_checkpoint(dir.path, more); }), "no array 'grains/charge'"));
+  EXPECT_TRUE(contains(error_of<InputError>([&] { read_checkpoint(dir.path, more); }), "no array 'grains/charge'"));
   auto fewer = state.arrays();
   fewer.erase(fewer.begin());
-  EXPECT_TRUE(contains(error_of<InputError>([&] { read_checkpoint(dir.path, fewer); }),
-                       "unexpected array 'grains/radius'"));
+  EXPECT_TRUE(
+      contains(error_of<InputError>([&] { read_checkpoint(dir.path, fewer); }), "unexpected array 'grains/radius'"));
   auto other = state.arrays();
   other[0].array = &state.t;
   EXPECT_TRUE(contains(error_of<InputError>([&] { read_checkpoint(dir.path, other); }),

@@ -61,20 +61,12 @@ TEST(Csv, Errors) {
                        }),
                        "other columns"));
   write_file(dir / "b.csv", "t,e\n1,2\n3\n");
-  EXPECT_TRUE(
-      contains(error_of<IoError>([&] { read_csv(dir / "b.csv"); }), "b.csv:3: error: 1 cells, expected 2"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { read_csv(dir / "b.csv"); }), "b.csv:3: error: 1 cells, expected 2"));
   write_file(dir / "c.csv", "t,e\n1,two\n");
-  EXPECT_TRUE(
-      contains(error_of<IoError>([&] { read_csv(dir / "c.csv"); }), "c.csv:2: error: 'two' is not a number"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { read_csv(dir / "c.csv"); }), "c.csv:2: error: 'two' is not a number"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { read_csv(dir / "none.csv"); }), "No such file"));
-  EXPECT_TRUE(contains(error_of<IoError>([&] {
-                         write_csv(dir / "no/d.csv", columns, {{}, {}});
-                       }),
-                       "cannot create"));
-  EXPECT_TRUE(contains(error_of<IoError>([&] {
-                         write_csv(dir / "d.csv", columns, {{1}, {}});
-                       }),
-                       "differ in length"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { write_csv(dir / "no/d.csv", columns, {{}, {}}); }), "cannot create"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { write_csv(dir / "d.csv", columns, {{1}, {}}); }), "differ in length"));
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ const std::vector<PlotData> data{{"points", {{0, 1, 2}, {0, std::nan(""), 4}}}};
 TEST(Gnuplot, DrawsInTheFormatOfTheName) {
   if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Scratch dir;
-  for (const auto& [name, begin] :
-       {std::pair{"it's.svg", "<?xml"}, {"a.png", "\x89PNG"}, {"a.pdf", "%PDF"}}) {
+  for (const auto& [name, begin] : {std::pair{"it's.svg", "<?xml"}, {"a.png", "\x89PNG"}, {"a.pdf", "%PDF"}}) {
     plot(dir / name, "plot $points using 1:2 with linespoints title 'u'", data);
     EXPECT_TRUE(read_file(dir / name).starts_with(begin)) << name;
     EXPECT_FALSE(std::filesystem::exists(dir / (std::string(name) + ".gp")));
@@ -26,8 +25,7 @@ TEST(Gnuplot, DrawsInTheFormatOfTheName) {
 TEST(Gnuplot, ItsErrorsAreReported) {
   if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Scratch dir;
-  EXPECT_TRUE(
-      contains(error_of<IoError>([&] { plot(dir / "a.svg", "plot $nothing", data); }), "gnuplot failed"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { plot(dir / "a.svg", "plot $nothing", data); }), "gnuplot failed"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { plot(dir / "a.txt", "", data); }), ".svg, .png or .pdf"));
 }
 

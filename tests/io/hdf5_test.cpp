@@ -50,8 +50,7 @@ TEST(H5File, ReturnsTheSameBits) {
   EXPECT_EQ(file.read<float>("single"), std::vector<float>{0.1f});
   EXPECT_TRUE(file.read<Vec3>("none").empty());
   EXPECT_EQ(file.dims("points"), (Dims{2, 3}));
-  EXPECT_EQ(file.children("/"),
-            (std::vector<std::string>{"a", "bytes", "ids", "none", "points", "single", "small"}));
+  EXPECT_EQ(file.children("/"), (std::vector<std::string>{"a", "bytes", "ids", "none", "points", "single", "small"}));
   EXPECT_TRUE(file.exists("a/b") && file.exists("/a/b/numbers") && !file.exists("a/c/numbers"));
 }
 
@@ -77,7 +76,7 @@ TEST(H5File, SameCallsSameBytes) {
     file.close();
     if (name[0] == 'a') ::sleep(1);  // a stored time of writing would differ
   }
-  EXPECT_EQ(read_file(dir / "a.h5"), read_file(dir / "b.h5"));
+  EXPECT_TRUE(read_file(dir / "a.h5") == read_file(dir / "b.h5"));
 }
 
 TEST(H5File, Attributes) {
@@ -138,8 +137,7 @@ TEST(H5File, ErrorsNameTheFileAndTheDataset) {
   file.write("x", std::vector<double>{0.5});
   file.write("big", std::vector<std::int64_t>{1});
   const auto name = (dir / "a.h5").string();
-  EXPECT_TRUE(contains(error_of<IoError>([&] { file.read<double>("g/y"); }),
-                       name + ": error: 'g/y': no such dataset"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { file.read<double>("g/y"); }), name + ": error: 'g/y': no such dataset"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { file.read<std::int64_t>("x"); }), "do not fit"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { file.read<std::int32_t>("big"); }), "do not fit"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { file.read<Vec3>("x"); }), "n x 3"));
@@ -149,8 +147,7 @@ TEST(H5File, ErrorsNameTheFileAndTheDataset) {
                        "'y': 3 values"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { H5File::read_only(dir / "none.h5"); }), "no such file"));
   write_file(dir / "text.h5", "not HDF5");
-  EXPECT_TRUE(
-      contains(error_of<IoError>([&] { H5File::read_only(dir / "text.h5"); }), "not a readable HDF5 file"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { H5File::read_only(dir / "text.h5"); }), "not a readable HDF5 file"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { H5File::create(dir / "no/such/a.h5"); }), "cannot create"));
 }
 

@@ -11,8 +11,8 @@ namespace bagnold::io {
 struct Scratch {
   Scratch() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path = std::filesystem::temp_directory_path() / ("bagnold-" + std::string(test->test_suite_name()) + "-" +
-                                                     test->name() + "-" + std::to_string(::getpid()));
+    path = std::filesystem::temp_directory_path() /
+           ("bagnold-" + std::string(test->test_suite_name()) + "-" + test->name() + "-" + std::to_string(::getpid()));
     std::filesystem::remove_all(path);
     std::filesystem::create_directories(path);
   }
@@ -34,8 +34,6 @@ std::string error_of(Call&& call) {
   return "";
 }
 
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace bagnold::io

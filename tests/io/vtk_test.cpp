@@ -68,13 +68,11 @@ TEST(Vtk, PointsComeBackBitForBit) {
 
 TEST(Vtk, SegmentsCarryDataPerCell) {
   const Scratch dir;
-  const std::vector<std::array<Vec3, 2>> segments{{Vec3{0, 0, 0}, Vec3{1, 0, 0}},
-                                                  {Vec3{0, 0, 1}, Vec3{0, 1, 0}}};
+  const std::vector<std::array<Vec3, 2>> segments{{Vec3{0, 0, 0}, Vec3{1, 0, 0}}, {Vec3{0, 0, 1}, Vec3{0, 1, 0}}};
   const std::vector<double> overlap{0.01, 0.02};
   write_vtp_lines(dir / "c.vtp", segments, {{"overlap", overlap}});
   const auto xml = read_file(dir / "c.vtp");
-  EXPECT_EQ(decode<Vec3>(xml, "Float64", "points"),
-            (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}}));
+  EXPECT_EQ(decode<Vec3>(xml, "Float64", "points"), (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}}));
   EXPECT_EQ(decode<std::int64_t>(xml, "Int64", "connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3}));
   EXPECT_EQ(decode<std::int64_t>(xml, "Int64", "offsets"), (std::vector<std::int64_t>{2, 4}));
   EXPECT_EQ(decode<double>(xml, "Float64", "overlap"), overlap);
@@ -105,10 +103,7 @@ TEST(Vtk, WrongLengthsAreErrors) {
                        }),
                        "'radius' has 3 values, expected 2"));
   EXPECT_FALSE(std::filesystem::exists(dir / "g.vtp"));
-  EXPECT_TRUE(contains(error_of<IoError>([&] {
-                         write_vts(dir / "s.vts", {3, 1, 1}, x, {});
-                       }),
-                       "2 nodes, expected 3"));
+  EXPECT_TRUE(contains(error_of<IoError>([&] { write_vts(dir / "s.vts", {3, 1, 1}, x, {}); }), "2 nodes, expected 3"));
 }
 
 TEST(Pvd, IsACompleteDocumentAfterEveryEntryAndResumesByTime) {
