@@ -10,10 +10,11 @@ namespace bagnold {
 void set_threads(int count);  // 0: from OMP_NUM_THREADS, else SLURM_CPUS_PER_TASK, else all cores
 int threads();
 
-// f(i) for i in [0, n), each exactly once, on any thread. f must not touch what another i writes.
+// f(i) for i in [0, n), each exactly once, on any thread. f must not touch what another i writes. With
+// `worthwhile` false the loop stays on this thread: starting a team costs microseconds.
 template <class F>
-void parallel_for(std::int64_t n, F&& f) {
-#pragma omp parallel for schedule(static)
+void parallel_for(std::int64_t n, F&& f, bool worthwhile = true) {
+#pragma omp parallel for schedule(static) if (worthwhile)
   for (std::int64_t i = 0; i < n; ++i) f(i);
 }
 

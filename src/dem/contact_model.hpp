@@ -1,0 +1,71 @@
+// Which law acts between which species. A ContactModel is the input as written; compile() turns it into the tables
+// of constants that the force loop reads.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "dem/state.hpp"
+#include "laws/registries.hpp"
+
+namespace bagnold::dem {
+
+// The laws of one pair of species. Within a model every pair has the same kinds of law, with its own parameters.
+struct PairParameters {
+  laws::NormalLaws::Any normal;
+  laws::TangentialLaws::Any tangential;
+  laws::RollingLaws::Any rolling;
+};
+
+struct ContactModel {
+  std::vector<std::string> species;   // names; Grains::species and Wall::species index them
+  std::vector<PairParameters> pairs;  // symmetric: entry a * species.size() + b
+};
+
+// Every pair of the named species with the same parameters; overwrite entries of `pairs` with set_pair.
+ContactModel uniform_model(std::vector<std::string> species, const PairParameters& parameters);
+void set_pair(ContactModel& model, std::int32_t a, std::int32_t b, const PairParameters& parameters);
+
+// Constants by species pair: entry a * species + b.
+using NormalTable = std::variant<std::vector<laws::LinearNormal<double>>, std::vector<laws::LinearNormalPerMass<double>>,
+                                 std::vector<laws::HertzNormal<double>>>;
+using TangentialTable =
+    std::variant<std::vector<laws::LinearTangential<double>>, std::vector<laws::MindlinTangential<double>>>;
+using RollingTable = std::variant<std::vector<laws::NoRolling<double>>, std::vector<laws::SpringSliderRolling<double>>>;
+
+struct ContactLaws {
+  std::int32_t species = 0;
+  NormalTable normal;
+  TangentialTable tangential;
+  RollingTable rolling;
+};
+
+// `pair_mass`: reduced mass of two mean flowing grains (mean_pair_mass), at which (collision_time, restitution) and
+// the automatic tangential damping hold when the input does not state another.
+// Throws UnphysicalError for parameters out of range, mixed kinds of law, or an automatic value that has no meaning.
+ContactLaws compile(const ContactModel& model, double pair_mass);
+
+double mean_pair_mass(const Grains& grains);  // m/2 of the mean flowing grain
+
+// One line of the table of contact types: what a pair of species amounts to at its own masses.
+struct ContactType {
+  std::string a, b;
+  double reduced_mass = 0;            // of mean grains; the grain's own mass against a base or a wall
+  double kn = 0, gamma_n = 0;         // damping as a force: f = kn delta - gamma_n v. For Hertz: tangent values at
+  double kt = 0, gamma_t = 0;         // an overlap of 1 % of the reduced radius
+  double mu = 0;
+  double tc = 0, restitution = 0;     // for Hertz: tc of impact at which the overlap would reach that 1 %
+};
+std::vector<ContactType> contact_types(const DemState& state, const ContactModel& model);
+
+// What `check` says of a step and a start.
+struct Finding {
+  bool error = false;                 // otherwise a warning
+  std::string key, text;
+};
+// dt against the shortest tc (> tc/10 error, > tc/20 warning), overlaps at the start (> 1 % of the radius warning,
+// > 50 % error), grains behind walls, empty fill.
+std::vector<Finding> physical_findings(const DemState& state, const ContactModel& model);
+
+}  // namespace bagnold::dem

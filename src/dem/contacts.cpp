@@ -1,0 +1,31 @@
+#include "dem/contacts.hpp"
+
+#include "dem/visit_contacts.hpp"
+
+namespace bagnold::dem {
+
+void list_contacts(const DemState& state, const ContactLaws& laws, std::vector<Contact>& out) {
+  out.clear();
+  with_laws(laws, [&](const auto& tables) {
+    visit_contacts(state, tables, [&](const auto& c) {
+      out.push_back({.i = static_cast<std::int32_t>(c.i),
+                     .j = static_cast<std::int32_t>(c.j),
+                     .branch = vec3(c.motion.r),
+                     .normal = vec3(c.geometry.n),
+                     .overlap = c.geometry.overlap,
+                     .force = vec3(c.force.force),
+                     .torque = vec3(c.force.torque_i),
+                     .torque_j = vec3(c.force.torque_j),
+                     .normal_force = vec3(c.force.normal * c.geometry.n),
+                     .spring = vec3(c.history.spring)});
+    });
+  });
+}
+
+std::vector<Contact> contacts(const DemState& state, const ContactLaws& laws) {
+  std::vector<Contact> out;
+  list_contacts(state, laws, out);
+  return out;
+}
+
+}  // namespace bagnold::dem

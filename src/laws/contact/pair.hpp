@@ -1,0 +1,173 @@
+// Everything two touching bodies do to each other, in the order of the paper: geometry, slip, advance of the
+// springs, Coulomb cut, forces and torques. Written once for any number type, so that every kernel shares it.
+// Weinhart et al. 2012, eqs 1-9 and algorithms 1, 2; the spin terms of the slip follow from the surface velocity
+// v + omega x b (the print has them with the opposite sign).
+#pragma once
+#include "core/numeric.hpp"
+#include "laws/contact/response.hpp"
+
+namespace bagnold::laws {
+
+// Motion of body i relative to body j, and what it is made of. For a plane, j has radius 0 and r points from the
+// foot of the perpendicular to the centre of i.
+template <class N>
+struct PairMotion {
+  Vec3Of<N> r, v;               // r_i - r_j, v_i - v_j
+  Vec3Of<N> omega_i, omega_j;
+  N radius_i, radius_j;
+  N turns;                      // 1: the normal turns with the pair; 0: it is that of a plane
+};
+
+template <class N>
+struct PairGeometry {
+  Vec3Of<N> n, v, slip, spin;   // unit normal from j to i; v_ij; slip velocity v^t; relative rolling velocity
+  N overlap, vn, turn_rate;     // delta_n; v_ij . n; 1/|r_ij|, 0 at a plane
+  N arm_i, arm_j;               // centre to contact point, (d - delta_n)/2
+};
+
+// What the contact remembers.
+template <class N>
+struct PairHistory {
+  Vec3Of<N> spring, roll;       // tangential displacement delta_t, rolling angle; both 0 when the contact forms
+};
+
+template <class N>
+struct PairForce {
+  Vec3Of<N> force, torque_i, torque_j;         // force on i (minus that on j), torques about the centres
+  N normal;                                    // f^n = normal * n
+  N normal_damping;                            // dashpot part of `normal`
+  Vec3Of<N> tangential_damping, roll_damping;  // dashpot parts of the tangential force and of the rolling torque
+  N tangential_stiffness, roll_stiffness;
+  N slide_loss, roll_loss;                     // spring energy the sliders took while the springs were advanced
+};
+
+template <class Normal, class Tangential, class Rolling>
+struct PairLaw {
+  Normal normal;
+  Tangential tangential;
+  Rolling rolling;
+};
+
+template <class N>
+PairGeometry<N> pair_geometry(const PairMotion<N>& m) {
+  const N distance = sqrt(dot(m.r, m.r)), inverse = N(1) / distance;
+  PairGeometry<N> g;
+  g.n = inverse * m.r;
+  g.v = m.v;
+  g.overlap = m.radius_i + m.radius_j - distance;
+  g.vn = dot(m.v, g.n);
+  g.turn_rate = m.turns * inverse;
+  g.arm_i = m.radius_i - N(0.5) * g.overlap;
+  g.arm_j = m.radius_j - N(0.5) * g.overlap;
+  // b_ij = -arm_i n, b_ji = +arm_j n
+  g.slip = m.v - g.vn * g.n - cross(g.arm_i * m.omega_i + g.arm_j * m.omega_j, g.n);
+  const Vec3Of<N> relative = m.omega_i - m.omega_j;
+  g.spin = relative - dot(relative, g.n) * g.n;
+  return g;
+}
+
+namespace detail {
+
+// Eq. 9: the spring stretches by the rate and turns with the pair.
+template <class N>
+Vec3Of<N> stretched(const Vec3Of<N>& spring, const Vec3Of<N>& rate, const PairGeometry<N>& g, N dt) {
+  return spring + dt * (rate - (dot(spring, g.v) * g.turn_rate) * g.n);
+}
+
+// Tangent stiffness of the normal law a step ago, relative to now. The drift is linear, so the overlap then was
+// overlap + v_n dt up to the turning of the pair.
+template <class N, class Normal>
+N earlier_stiffness(const Normal& law, const PairGeometry<N>& g, const PairSize<N>& size, N dt) {
+  return law.respond(max(N(0), g.overlap + dt * g.vn), size).stiffness;
+}
+
+// A spring whose stiffness was `earlier` a step ago: its force is kept while the stiffness grows, its
+// length while it falls, so no energy appears. Returns the energy given up.
+template <class N>
+N rescale(Vec3Of<N>& spring, N earlier, N now) {
+  const N factor = min(N(1), earlier / now), length2 = dot(spring, spring);
+  spring = factor * spring;
+  return N(0.5) * length2 * (earlier - now * factor * factor);
+}
+
+}  // namespace detail
+
+// Tangential part, algorithm 2. Advance: the springs move on by dt; otherwise the history is only read.
+template <bool Advance, class N, class Normal, class Tangential, class Rolling>
+void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g, const PairSize<N>& size,
+                    const NormalResponse<N>& normal, N dt, PairHistory<N>& history, PairForce<N>& out) {
+  const N kt = law.tangential.stiffness(normal), gamma = law.tangential.damping(normal);
+  Vec3Of<N>& spring = history.spring;
+  if constexpr (Advance) {
+    if constexpr (!Normal::constant_stiffness && !Tangential::constant_stiffness) {
+      const N earlier = kt * detail::earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
+      out.slide_loss = out.slide_loss + detail::rescale(spring, earlier, kt);
+    }
+    spring = detail::stretched(spring, g.slip, g, dt);
+  }
+  Vec3Of<N> force = N(-1) * (kt * spring + gamma * g.slip);
+  const N limit = law.tangential.mu * abs(out.normal), trial2 = dot(force, force);
+  const auto slides = trial2 > limit * limit;
+  if (any(slides)) {
+    force = select(slides, limit / sqrt(trial2), N(1)) * force;
+    if constexpr (Advance) {
+      const N minus_inverse = select(kt > N(0), N(-1) / kt, N(0));
+      const Vec3Of<N> cut = minus_inverse * (force + gamma * g.slip);
+      const N given_up = N(0.5) * kt * (dot(spring, spring) - dot(cut, cut));
+      out.slide_loss = out.slide_loss + select(slides, given_up, N(0));
+      spring = select(slides, cut, spring);
+    }
+  }
+  out.tangential_stiffness = kt;
+  out.tangential_damping = force + kt * spring;
+  out.force = out.force + force;
+  const Vec3Of<N> turning = cross(g.n, force);
+  out.torque_i = N(-1) * (g.arm_i * turning);
+  out.torque_j = N(-1) * (g.arm_j * turning);
+}
+
+// Rolling part, Ai et al. 2011, model C.
+template <bool Advance, class N, class Normal, class Tangential, class Rolling>
+void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g, const PairSize<N>& size,
+                 const NormalResponse<N>& normal, N dt, PairHistory<N>& history, PairForce<N>& out) {
+  const N kr = law.rolling.stiffness(normal, size), cr = law.rolling.damping(kr, size);
+  Vec3Of<N>& roll = history.roll;
+  if constexpr (Advance) {
+    if constexpr (!Normal::constant_stiffness) {
+      const N earlier = kr * detail::earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
+      out.roll_loss = out.roll_loss + detail::rescale(roll, earlier, kr);
+    }
+    roll = detail::stretched(roll, g.spin, g, dt);
+  }
+  const N limit = law.rolling.limit(out.normal, size), trial2 = kr * kr * dot(roll, roll);
+  // A spring at its limit slides, also when it is read again after having been cut to it.
+  const auto slides = trial2 > N(1 - 1e-12) * limit * limit;
+  if (any(slides)) {
+    const Vec3Of<N> cut = select(slides, limit / sqrt(trial2), N(1)) * roll;
+    if constexpr (Advance) {
+      out.roll_loss = out.roll_loss + N(0.5) * kr * (dot(roll, roll) - dot(cut, cut));
+      roll = cut;
+    }
+  }
+  out.roll_stiffness = kr;
+  out.roll_damping = select(slides, N(0), N(0) - cr) * g.spin;
+  const Vec3Of<N> torque = out.roll_damping - kr * roll;
+  out.torque_i = out.torque_i + torque;
+  out.torque_j = out.torque_j - torque;
+}
+
+// The interaction of a touching pair (overlap > 0).
+template <bool Advance, class N, class Normal, class Tangential, class Rolling>
+PairForce<N> interact(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g, const PairSize<N>& size,
+                      N dt, PairHistory<N>& history) {
+  PairForce<N> out{};
+  const NormalResponse<N> normal = law.normal.respond(g.overlap, size);
+  out.normal_damping = N(0) - normal.damping * g.vn;
+  out.normal = normal.elastic + out.normal_damping;
+  out.force = out.normal * g.n;
+  add_tangential<Advance>(law, g, size, normal, dt, history, out);
+  if constexpr (Rolling::active) add_rolling<Advance>(law, g, size, normal, dt, history, out);
+  return out;
+}
+
+}  // namespace bagnold::laws

@@ -1,0 +1,29 @@
+// What a normal law is told about a pair, and what it answers. Every normal force has the form
+//   f^n = elastic(delta) - damping(delta) v_n,   v_n = v_ij . n  (negative while the pair approaches).
+#pragma once
+#include "core/numeric.hpp"
+
+namespace bagnold::laws {
+
+// Sizes as inverses, so that a plane (infinite radius) and a fixed body (infinite mass) are plain zeros.
+template <class N>
+struct PairSize {
+  N inverse_radius_i, inverse_radius_j;  // 1/length
+  N inverse_mass_i, inverse_mass_j;      // 1/mass, 0 when the body never moves
+  N reduced_radius() const { return N(1) / (inverse_radius_i + inverse_radius_j); }
+  N reduced_mass() const { return N(1) / (inverse_mass_i + inverse_mass_j); }
+  // 1/(1/I'_i + 1/I'_j), I' = (7/5) m r^2 of a solid sphere about its contact point (Ai et al. 2011, eq. 17).
+  N rolling_inertia() const {
+    return N(1.4) / (inverse_mass_i * inverse_radius_i * inverse_radius_i +
+                     inverse_mass_j * inverse_radius_j * inverse_radius_j);
+  }
+};
+
+template <class N>
+struct NormalResponse {
+  N elastic;    // force at rest, >= 0
+  N damping;    // force per closing speed
+  N stiffness;  // d elastic / d overlap
+};
+
+}  // namespace bagnold::laws

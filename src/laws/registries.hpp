@@ -1,0 +1,29 @@
+// THE list of laws: one registry per family, one line per law.
+#pragma once
+#include "core/registry.hpp"
+// contact
+#include "laws/contact/hertz.hpp"
+#include "laws/contact/linear.hpp"
+#include "laws/rolling/none.hpp"
+#include "laws/rolling/spring_slider.hpp"
+#include "laws/tangential/linear_history.hpp"
+#include "laws/tangential/mindlin.hpp"
+
+namespace bagnold::laws {
+
+// Normal contact forces.
+using NormalLaws = Registry<
+    Linear,
+    Hertz>;
+
+// Tangential contact forces.
+using TangentialLaws = Registry<
+    LinearHistory,
+    Mindlin>;
+
+// Resistance to rolling.
+using RollingLaws = Registry<
+    NoRollingResistance,
+    SpringSlider>;
+
+}  // namespace bagnold::laws
