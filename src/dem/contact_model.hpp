@@ -64,8 +64,8 @@ struct Finding {
   bool error = false;                 // otherwise a warning
   std::string key, text;
 };
-// dt against the shortest tc (> tc/10 error, > tc/20 warning), overlaps at the start (> 1 % of the radius warning,
-// > 50 % error), grains behind walls, empty fill.
+// Of a prepared state: dt against tc of every contact type (> tc/10 error, > tc/20 warning), overlaps at the start
+// (> 1 % of the radius warning, > max_overlap_ratio error), no moving grains (error).
 std::vector<Finding> physical_findings(const DemState& state, const ContactModel& model);
 
 }  // namespace bagnold::dem
