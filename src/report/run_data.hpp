@@ -1,0 +1,26 @@
+// What a report needs of a run directory, read.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "io/csv.hpp"
+
+namespace bagnold::report {
+
+struct RunData {
+  std::string name;  // of the directory: tells runs apart in figures with several
+  nlohmann::ordered_json summary;
+  std::string input;  // case.toml
+  std::optional<io::CsvTable> series, profile;
+};
+
+// Reads summary.json, case.toml and, where they exist, series.csv and profile.csv. Throws InputError when
+// `directory` holds no finished or interrupted run, IoError when a file cannot be read.
+RunData read_run(const std::filesystem::path& directory);
+
+// summary.<section>.<key> as a number; NaN when it is absent or null.
+double number(const RunData& run, const std::string& section, const std::string& key);
+
+}  // namespace bagnold::report
