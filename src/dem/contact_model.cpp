@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -33,69 +34,44 @@ void check_ranges(const Law& law) {
   });
 }
 
-template <class Law, class Any>
-const Law& same_kind(const Any& law) {
-  if (!std::holds_alternative<Law>(law))
-    throw UnphysicalError("contact", "all pairs of species must use the same kinds of law");
-  return std::get<Law>(law);
+// The constants of every pair as one table. `law_of(pair)`: the law, of any kind; `nominal`: by pair.
+template <class R, class LawOf>
+Tables<R> table_of(const ContactModel& model, const std::vector<laws::NominalPair>& nominal, LawOf law_of) {
+  const auto visit_constants = [&](std::size_t k, auto&& f) {
+    std::visit(
+        [&](const auto& law) {
+          check_ranges(law);
+          std::visit(f, law.constants(nominal[k]));
+        },
+        law_of(model.pairs[k]));
+  };
+  Tables<R> tables;
+  visit_constants(0, [&](const auto& first) {
+    using Constants = std::decay_t<decltype(first)>;
+    auto& table = tables.template emplace<std::vector<Constants>>();
+    for (std::size_t k = 0; k < model.pairs.size(); ++k)
+      visit_constants(k, [&](const auto& constants) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(constants)>, Constants>)
+          table.push_back(constants);
+        else
+          throw UnphysicalError("contact", "all pairs of species must use the same kinds of law and damping_convention");
+      });
+  });
+  return tables;
 }
 
-NormalTable normal_table(const ContactModel& model, double pair_mass) {
-  if (std::holds_alternative<laws::Hertz>(model.pairs.front().normal)) {
-    std::vector<laws::HertzNormal<double>> table;
-    for (const auto& pair : model.pairs) table.push_back(same_kind<laws::Hertz>(pair.normal).constants());
-    return table;
-  }
-  const bool per_mass = same_kind<laws::Linear>(model.pairs.front().normal).per_reduced_mass();
-  std::vector<laws::LinearNormal<double>> by_force;
-  std::vector<laws::LinearNormalPerMass<double>> by_mass;
-  for (const auto& pair : model.pairs) {
-    const auto& law = same_kind<laws::Linear>(pair.normal);
-    if (law.per_reduced_mass() != per_mass)
-      throw UnphysicalError("contact.damping_convention", "must be the same for all pairs of species");
-    const laws::SpringDashpot s = law.constants(pair_mass);
-    by_force.push_back({s.stiffness, s.damping});
-    by_mass.push_back({s.stiffness, s.damping});
-  }
-  if (per_mass) return by_mass;
-  return by_force;
-}
-
-laws::LinearTangential<double> linear_tangential(const PairParameters& pair, double pair_mass) {
-  const auto& law = same_kind<laws::LinearHistory>(pair.tangential);
-  const auto* normal = std::get_if<laws::Linear>(&pair.normal);
-  if (normal == nullptr && !(law.tangential_stiffness && law.tangential_damping))
-    throw UnphysicalError("contact.tangential_stiffness",
-                          "and tangential_damping have no automatic value unless normal = \"linear\"");
-  laws::SpringDashpot s;
-  if (normal != nullptr) {
-    s = normal->constants(pair_mass);
-    if (normal->per_reduced_mass()) s.damping *= normal->reduced_mass.value_or(pair_mass);
-  }
-  return {law.tangential_stiffness.value_or(2 * s.stiffness / 7), law.tangential_damping.value_or(s.damping),
-          law.friction};
-}
-
-TangentialTable tangential_table(const ContactModel& model, double pair_mass) {
-  if (std::holds_alternative<laws::Mindlin>(model.pairs.front().tangential)) {
-    std::vector<laws::MindlinTangential<double>> table;
-    for (const auto& pair : model.pairs) table.push_back(same_kind<laws::Mindlin>(pair.tangential).constants());
-    return table;
-  }
-  std::vector<laws::LinearTangential<double>> table;
-  for (const auto& pair : model.pairs) table.push_back(linear_tangential(pair, pair_mass));
-  return table;
-}
-
-RollingTable rolling_table(const ContactModel& model) {
-  return std::visit(
-      [&](const auto& first) -> RollingTable {
-        using Law = std::decay_t<decltype(first)>;
-        std::vector<decltype(first.constants())> table;
-        for (const auto& pair : model.pairs) table.push_back(same_kind<Law>(pair.rolling).constants());
-        return table;
+// What the normal laws amount to for two mean grains.
+std::vector<laws::NominalPair> nominal_pairs(const Tables<laws::NormalLaws>& normal, double pair_mass) {
+  std::vector<laws::NominalPair> nominal;
+  std::visit(
+      [&](const auto& table) {
+        for (const auto& law : table) {
+          const auto response = law.respond(0.0, {1, 1, 0.5 / pair_mass, 0.5 / pair_mass});
+          nominal.push_back({pair_mass, std::decay_t<decltype(law)>::constant_stiffness, response.stiffness, response.damping});
+        }
       },
-      model.pairs.front().rolling);
+      normal);
+  return nominal;
 }
 
 }  // namespace
@@ -114,13 +90,12 @@ void set_pair(ContactModel& model, std::int32_t a, std::int32_t b, const PairPar
 ContactLaws compile(const ContactModel& model, double pair_mass) {
   if (model.pairs.empty() || model.pairs.size() != model.species.size() * model.species.size())
     throw UnphysicalError("contact", "expected parameters for every pair of species");
-  for (const auto& pair : model.pairs) {
-    std::visit([](const auto& law) { check_ranges(law); }, pair.normal);
-    std::visit([](const auto& law) { check_ranges(law); }, pair.tangential);
-    std::visit([](const auto& law) { check_ranges(law); }, pair.rolling);
-  }
-  return {static_cast<std::int32_t>(model.species.size()), normal_table(model, pair_mass),
-          tangential_table(model, pair_mass), rolling_table(model)};
+  const std::vector<laws::NominalPair> mass_only(model.pairs.size(), {.reduced_mass = pair_mass});
+  const auto normal = table_of<laws::NormalLaws>(model, mass_only, [](const auto& p) { return p.normal; });
+  const auto nominal = nominal_pairs(normal, pair_mass);
+  return {static_cast<std::int32_t>(model.species.size()), normal,
+          table_of<laws::TangentialLaws>(model, nominal, [](const auto& p) { return p.tangential; }),
+          table_of<laws::RollingLaws>(model, nominal, [](const auto& p) { return p.rolling; })};
 }
 
 double mean_pair_mass(const Grains& grains) {

@@ -27,18 +27,30 @@ struct ContactModel {
 ContactModel uniform_model(std::vector<std::string> species, const PairParameters& parameters);
 void set_pair(ContactModel& model, std::int32_t a, std::int32_t b, const PairParameters& parameters);
 
-// Constants by species pair: entry a * species + b.
-using NormalTable = std::variant<std::vector<laws::LinearNormal<double>>, std::vector<laws::LinearNormalPerMass<double>>,
-                                 std::vector<laws::HertzNormal<double>>>;
-using TangentialTable =
-    std::variant<std::vector<laws::LinearTangential<double>>, std::vector<laws::MindlinTangential<double>>>;
-using RollingTable = std::variant<std::vector<laws::NoRolling<double>>, std::vector<laws::SpringSliderRolling<double>>>;
+namespace detail {
+template <class... Variants>
+struct Joined;
+template <class... A>
+struct Joined<std::variant<A...>> {
+  using Tables = std::variant<std::vector<A>...>;
+};
+template <class... A, class... B, class... Rest>
+struct Joined<std::variant<A...>, std::variant<B...>, Rest...> : Joined<std::variant<A..., B...>, Rest...> {};
+template <class R>
+struct TablesOf;
+template <class... Laws>
+struct TablesOf<Registry<Laws...>> : Joined<typename Laws::Constants...> {};
+}  // namespace detail
+
+// For a registry of laws: one vector of constants, by species pair (entry a * species + b), of whichever law is chosen.
+template <class R>
+using Tables = typename detail::TablesOf<R>::Tables;
 
 struct ContactLaws {
   std::int32_t species = 0;
-  NormalTable normal;
-  TangentialTable tangential;
-  RollingTable rolling;
+  Tables<laws::NormalLaws> normal;
+  Tables<laws::TangentialLaws> tangential;
+  Tables<laws::RollingLaws> rolling;
 };
 
 // `pair_mass`: reduced mass of two mean flowing grains (mean_pair_mass), at which (collision_time, restitution) and

@@ -7,7 +7,6 @@
 #include "dem/contact_model.hpp"
 #include "dem/energy.hpp"
 #include "dem/contact_laws.hpp"
-#include "laws/contact/collision.hpp"
 
 namespace bagnold::dem {
 
@@ -51,23 +50,11 @@ std::vector<Occurrence> occurrences(const DemState& state, std::size_t species) 
 
 template <class Law>
 ContactType describe(const Law& law, const Size& size, const ContactModel& model, std::size_t a, std::size_t b) {
-  constexpr bool is_linear = decltype(law.normal)::constant_stiffness;
-  const double mass = size.reduced_mass(), overlap = 0.01 * size.reduced_radius();
-  const auto normal = law.normal.respond(overlap, size);
-  ContactType type{.a = model.species[a], .b = model.species[b], .reduced_mass = mass, .kn = normal.stiffness,
-                   .gamma_n = normal.damping, .kt = law.tangential.stiffness(normal),
-                   .gamma_t = law.tangential.damping(normal), .mu = law.tangential.mu};
-  if constexpr (is_linear) {
-    const laws::Collision c = laws::collision_of({type.kn, type.gamma_n}, mass);
-    type.tc = c.time;
-    type.restitution = c.restitution;
-  } else {
-    // Speed at which an elastic collision reaches that overlap.
-    const double speed = std::sqrt(2 * law.normal.energy(overlap, size) / mass);
-    type.tc = laws::hertz_collision_time(law.normal, size.reduced_radius(), mass, speed);
-    type.restitution = std::get<laws::Hertz>(model.pairs[a * model.species.size() + b].normal).restitution;
-  }
-  return type;
+  const auto normal = law.normal.respond(0.01 * size.reduced_radius(), size);
+  const laws::Collision collision = law.normal.collision(size);
+  return {.a = model.species[a], .b = model.species[b], .reduced_mass = size.reduced_mass(), .kn = normal.stiffness,
+          .gamma_n = normal.damping, .kt = law.tangential.stiffness(normal), .gamma_t = law.tangential.damping(normal),
+          .mu = law.tangential.mu, .tc = collision.time, .restitution = collision.restitution};
 }
 
 }  // namespace

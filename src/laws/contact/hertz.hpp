@@ -6,8 +6,10 @@
 #include <numbers>
 #include <string_view>
 #include <tuple>
+#include <variant>
 
 #include "core/fields.hpp"
+#include "laws/contact/collision.hpp"
 #include "laws/contact/response.hpp"
 
 namespace bagnold::laws {
@@ -25,6 +27,19 @@ struct HertzNormal {
   N energy(N overlap, const PairSize<N>& size) const {
     return N(8.0 / 15) * modulus * sqrt(size.reduced_radius() * overlap) * overlap * overlap;
   }
+
+  // Collision time of an elastic pair that meets at `speed` (Landau & Lifshitz, Theory of Elasticity, section 9):
+  //   tc = (2/v) (5 m v^2/(4 K))^(2/5) integral_0^1 dx/sqrt(1 - x^(5/2)).
+  double collision_time(const PairSize<double>& size, double speed) const {
+    constexpr double integral = 1.4716378;  // sqrt(pi) Gamma(2/5) / (5/2 Gamma(9/10))
+    const double k = 4.0 / 3 * modulus * std::sqrt(size.reduced_radius());
+    return 2 / speed * std::pow(1.25 * size.reduced_mass() * speed * speed / k, 0.4) * integral;
+  }
+  // At the speed that would reach an overlap of 1 % of the reduced radius.
+  Collision collision(const PairSize<double>& size) const {
+    const double speed = std::sqrt(2 * energy(0.01 * size.reduced_radius(), size) / size.reduced_mass());
+    return {collision_time(size, speed), std::exp(-alpha * std::numbers::pi / std::sqrt(5 - alpha * alpha))};
+  }
 };
 
 struct Hertz {
@@ -41,19 +56,13 @@ struct Hertz {
               Range{.lo = 0, .hi = 1, .lo_open = true})};
   }
   // E* = E/(2 (1 - nu^2)) of two like materials.
-  HertzNormal<double> constants() const {
+  using Constants = std::variant<HertzNormal<double>>;
+  Constants constants(const NominalPair&) const {
     const double log_eps = std::log(restitution);
-    return {young_modulus / (2 * (1 - poisson_ratio * poisson_ratio)),
-            -std::sqrt(5.0) * log_eps / std::sqrt(log_eps * log_eps + std::numbers::pi * std::numbers::pi)};
+    return HertzNormal<double>{
+        young_modulus / (2 * (1 - poisson_ratio * poisson_ratio)),
+        -std::sqrt(5.0) * log_eps / std::sqrt(log_eps * log_eps + std::numbers::pi * std::numbers::pi)};
   }
 };
-
-// Collision time of an elastic Hertz pair that meets at `speed` (Landau & Lifshitz, Theory of Elasticity, section 9):
-//   tc = (2/v) (5 m v^2/(4 K))^(2/5) integral_0^1 dx/sqrt(1 - x^(5/2)).
-inline double hertz_collision_time(const HertzNormal<double>& law, double reduced_radius, double reduced_mass, double speed) {
-  constexpr double integral = 1.4716378;  // sqrt(pi) Gamma(2/5) / (5/2 Gamma(9/10))
-  const double k = 4.0 / 3 * law.modulus * std::sqrt(reduced_radius);
-  return 2 / speed * std::pow(1.25 * reduced_mass * speed * speed / k, 0.4) * integral;
-}
 
 }  // namespace bagnold::laws

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <variant>
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
@@ -18,6 +19,7 @@ struct LinearNormal {
   N kn, gamma;
   NormalResponse<N> respond(N overlap, const PairSize<N>&) const { return {kn * overlap, gamma, kn}; }
   N energy(N overlap, const PairSize<N>&) const { return N(0.5) * kn * overlap * overlap; }
+  Collision collision(const PairSize<double>& size) const { return collision_of({kn, gamma}, size.reduced_mass()); }
 };
 
 // The same with gamma given per reduced mass, f^n = kn delta - gamma m_ij v_n (Silbert et al. 2001): then the rate
@@ -30,6 +32,9 @@ struct LinearNormalPerMass {
     return {kn * overlap, gamma * size.reduced_mass(), kn};
   }
   N energy(N overlap, const PairSize<N>&) const { return N(0.5) * kn * overlap * overlap; }
+  Collision collision(const PairSize<double>& size) const {
+    return collision_of({kn, gamma * size.reduced_mass()}, size.reduced_mass());
+  }
 };
 
 // As a user writes it: (stiffness, damping), or (collision_time, restitution) at a stated reduced mass.
@@ -58,14 +63,20 @@ struct Linear {
     return damping_convention == "per_reduced_mass";
   }
 
-  // kn and gamma in the stated convention. `default_mass` is used when reduced_mass is auto.
-  SpringDashpot constants(double default_mass) const {
+  using Constants = std::variant<LinearNormal<double>, LinearNormalPerMass<double>>;
+  Constants constants(const NominalPair& nominal) const {
+    const SpringDashpot s = spring_dashpot(reduced_mass.value_or(nominal.reduced_mass));
+    if (per_reduced_mass()) return LinearNormalPerMass<double>{s.stiffness, s.damping};
+    return LinearNormal<double>{s.stiffness, s.damping};
+  }
+
+  // kn and gamma in the stated convention, of a pair of that mass.
+  SpringDashpot spring_dashpot(double mass) const {
     const bool by_constants = stiffness || damping, by_collision = collision_time || restitution;
     if (by_constants == by_collision || (by_constants ? !(stiffness && damping) : !(collision_time && restitution)))
       throw UnphysicalError("contact.stiffness",
                             "expected either both of stiffness and damping or both of collision_time and restitution");
     if (by_constants) return {*stiffness, *damping};
-    const double mass = reduced_mass.value_or(default_mass);
     SpringDashpot s = spring_dashpot_of({*collision_time, *restitution}, mass);
     if (per_reduced_mass()) s.damping /= mass;
     return s;

@@ -19,6 +19,13 @@ struct PairSize {
   }
 };
 
+// What automatic parameters refer to: two mean flowing grains.
+struct NominalPair {
+  double reduced_mass = 0;
+  bool constant_stiffness = false;       // kn and gamma_n below have a meaning
+  double stiffness = 0, damping = 0;     // kn, gamma_n (as a force) of the normal law at that mass
+};
+
 template <class N>
 struct NormalResponse {
   N elastic;    // force at rest, >= 0

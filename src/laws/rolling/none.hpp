@@ -2,6 +2,9 @@
 #pragma once
 #include <string_view>
 #include <tuple>
+#include <variant>
+
+#include "laws/contact/response.hpp"
 
 namespace bagnold::laws {
 
@@ -15,7 +18,8 @@ struct NoRollingResistance {
   static constexpr std::string_view summary = "no resistance to rolling";
   static constexpr std::string_view source = "";
   static constexpr auto fields() { return std::tuple{}; }
-  NoRolling<double> constants() const { return {}; }
+  using Constants = std::variant<NoRolling<double>>;
+  Constants constants(const NominalPair&) const { return NoRolling<double>{}; }
 };
 
 }  // namespace bagnold::laws

@@ -5,6 +5,7 @@
 #pragma once
 #include <string_view>
 #include <tuple>
+#include <variant>
 
 #include "core/fields.hpp"
 #include "laws/contact/response.hpp"
@@ -36,7 +37,10 @@ struct SpringSlider {
                       field("rolling_damping", "-", "eta: rolling damping / critical", &SpringSlider::rolling_damping,
                             non_negative())};
   }
-  SpringSliderRolling<double> constants() const { return {rolling_friction, rolling_damping}; }
+  using Constants = std::variant<SpringSliderRolling<double>>;
+  Constants constants(const NominalPair&) const {
+    return SpringSliderRolling<double>{rolling_friction, rolling_damping};
+  }
 };
 
 }  // namespace bagnold::laws

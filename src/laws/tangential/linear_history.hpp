@@ -4,7 +4,9 @@
 #include <optional>
 #include <string_view>
 #include <tuple>
+#include <variant>
 
+#include "core/error.hpp"
 #include "core/fields.hpp"
 #include "laws/contact/response.hpp"
 
@@ -30,6 +32,14 @@ struct LinearHistory {
                       field("tangential_damping", "mass/time", "gamma_t; auto: gamma_n of a pair of mean grains",
                             &LinearHistory::tangential_damping, non_negative()),
                       field("friction", "-", "Coulomb friction mu", &LinearHistory::friction, non_negative())};
+  }
+  using Constants = std::variant<LinearTangential<double>>;
+  Constants constants(const NominalPair& nominal) const {
+    if (!nominal.constant_stiffness && !(tangential_stiffness && tangential_damping))
+      throw UnphysicalError("contact.tangential_stiffness",
+                            "and tangential_damping have no automatic value unless the normal law is linear");
+    return LinearTangential<double>{tangential_stiffness.value_or(2 * nominal.stiffness / 7),
+                                    tangential_damping.value_or(nominal.damping), friction};
   }
 };
 

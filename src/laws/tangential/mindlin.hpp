@@ -5,6 +5,7 @@
 #pragma once
 #include <string_view>
 #include <tuple>
+#include <variant>
 
 #include "core/fields.hpp"
 #include "laws/contact/response.hpp"
@@ -31,8 +32,9 @@ struct Mindlin {
                             non_negative()),
                       field("friction", "-", "Coulomb friction mu", &Mindlin::friction, non_negative())};
   }
-  MindlinTangential<double> constants() const {
-    return {2 * (1 - poisson_ratio) / (2 - poisson_ratio), tangential_damping_ratio, friction};
+  using Constants = std::variant<MindlinTangential<double>>;
+  Constants constants(const NominalPair&) const {
+    return MindlinTangential<double>{2 * (1 - poisson_ratio) / (2 - poisson_ratio), tangential_damping_ratio, friction};
   }
 };
 
