@@ -1,6 +1,10 @@
 // THE list of laws: one registry per family, one line per law.
 #pragma once
 #include "core/registry.hpp"
+// coarse-graining
+#include "laws/cg_kernel/gaussian.hpp"
+#include "laws/cg_kernel/heaviside.hpp"
+#include "laws/cg_kernel/lucy.hpp"
 // contact
 #include "laws/contact/hertz.hpp"
 #include "laws/contact/linear.hpp"
@@ -25,5 +29,11 @@ using TangentialLaws = Registry<
 using RollingLaws = Registry<
     NoRollingResistance,
     SpringSlider>;
+
+// Coarse-graining functions.
+using CgKernels = Registry<
+    CgGaussian,
+    CgLucy,
+    CgHeaviside>;
 
 }  // namespace bagnold::laws
