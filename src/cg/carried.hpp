@@ -8,9 +8,10 @@
 namespace bagnold::cg {
 
 // Writes channels [0, kCarried) of grain i; `nn` is the sum of n_a n_b over its contacts (xx xy xz yy yz zz).
-inline void carried_by_grain(double* q, const Snapshot& s, std::size_t i, const double* nn) {
+inline void carried_by_grain(double* __restrict q, const Snapshot& s, std::size_t i, const double* nn) {
   const double m = s.mass[i], I = s.inertia[i], d = s.diameter[i];
-  const Vec3 v = s.v[i], omega = s.omega[i];
+  const Vec3& v = s.v[i];
+  const Vec3& omega = s.omega[i];
   const double volume = std::numbers::pi / 6 * d * d * d;
   q[kMass] = m;
   q[kMomentum + 0] = m * v.x;

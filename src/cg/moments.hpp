@@ -57,6 +57,8 @@ struct ProfileMoments {
 // Scratch of add_snapshot, kept between calls so that nothing is allocated.
 struct ProfileScratch {
   std::vector<double> of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric
+  std::vector<std::int32_t> bin, order, begin, next;   // grains sorted by bin
+  std::vector<double> delta, carried, powers;          // carried, powers: in that order
 };
 
 ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& lattice, const Box& box);

@@ -1,0 +1,64 @@
+// A long average kept as a few dozen consecutive blocks: the average, the errors of everything derived from it,
+// and the decay of the momentum residual with the averaging time all come from the same rows.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cg/moments.hpp"
+#include "core/arrays.hpp"
+
+namespace bagnold::cg {
+
+// Averages over some blocks, at the nodes z.
+struct MeanProfile {
+  std::vector<double> z;
+  std::vector<Row> value, slope;
+  std::int64_t samples = 0;
+  double begin = 0, end = 0, spacing = 0, kernel_width = 0;
+  double contacts = 0;              // per sample
+  Vec3 base_force{};                // of the flow on the base
+  double area = 1;
+};
+
+class BlockedProfile {
+ public:
+  // `samples_expected` of the whole average, 0 if unknown. When `most_blocks` blocks are full, neighbours merge and
+  // blocks become twice as long.
+  BlockedProfile(const laws::CgKernels::Any& kernel, double spacing, const Box& box, std::int64_t samples_expected = 0);
+
+  void add(const Snapshot& snapshot);
+  std::int64_t samples() const;              // so far, the unfinished block included
+  std::int64_t complete_blocks() const { return static_cast<std::int64_t>(scalars_.size()) / scalars_per_block; }
+
+  MeanProfile mean() const;                                               // of every sample
+  MeanProfile mean(std::int64_t first_block, std::int64_t blocks) const;  // of complete blocks
+  // Of all complete blocks but [first_block, first_block + blocks): what a jackknife asks for.
+  MeanProfile mean_without(std::int64_t first_block, std::int64_t blocks) const;
+
+  // Everything that decides what comes next, for exact checkpoints.
+  std::vector<NamedArray> state(const std::string& prefix);
+
+  static constexpr std::int64_t most_blocks = 64;
+
+ private:
+  static constexpr std::int64_t scalars_per_block = 7;   // begin, end, samples, contacts, base force
+  static constexpr std::size_t row_size = 2 * kChannels;  // sums and their slopes
+
+  // Node sums of the current block in the layout of rows_, and its scalars.
+  std::vector<double> current_rows() const;
+  std::vector<double> current_scalars() const;
+  void widen(const NodeRange& range);
+  void close_block();
+  void merge_neighbours();
+  MeanProfile average(const std::vector<double>& rows, const std::vector<double>& scalars) const;
+
+  ProfileMoments current_;
+  ProfileScratch scratch_;
+  double begin_ = 0, end_ = 0;              // of the current block
+  std::int64_t block_samples_ = 1;
+  std::int64_t first_ = 0, count_ = 0;      // nodes of rows_
+  std::vector<double> scalars_, rows_;      // of complete blocks: [block][scalar], [block][node][row_size]
+};
+
+}  // namespace bagnold::cg
