@@ -1,0 +1,42 @@
+#include "cg/from_dem.hpp"
+
+#include <algorithm>
+
+#include "dem/contacts.hpp"
+
+namespace bagnold::cg {
+
+Snapshot snapshot_of(const dem::DemState& state, const dem::ContactLaws& laws, DemScratch& scratch) {
+  const dem::Grains& g = state.grains;
+  const auto n = g.x.size(), flowing = static_cast<std::size_t>(g.flowing);
+  scratch.v.assign(n, Vec3{});
+  scratch.omega.assign(n, Vec3{});
+  const double half = state.step == 0 ? 0 : 0.5 * state.dt;   // velocities are half a step behind once it moves
+  for (std::size_t i = 0; i < flowing; ++i) {
+    scratch.v[i] = g.v[i] + half * (g.force[i] / g.mass[i] + state.gravity);
+    scratch.omega[i] = g.omega[i] + (half / g.inertia[i]) * g.torque[i];
+  }
+  dem::list_contacts(state, laws, scratch.contacts);
+  return {state.time(), state.box, g.x, scratch.v, scratch.omega, g.diameter, g.mass, g.inertia, g.flowing, scratch.contacts};
+}
+
+namespace {
+double spacing_of(const StreamingOptions& o) {
+  return o.spacing > 0 ? o.spacing : 0.25 * std::visit([](const auto& k) { return k.width; }, o.kernel);
+}
+}  // namespace
+
+ProfileObserver::ProfileObserver(const StreamingOptions& options, const Box& box)
+    : options_(options), profile_(options.kernel, spacing_of(options), box, options.samples_expected()) {}
+
+std::int64_t ProfileObserver::next_step(std::int64_t step) const {
+  if (step < options_.first_step) return options_.first_step;
+  return options_.first_step + ((step - options_.first_step) / options_.every + 1) * options_.every;
+}
+
+void ProfileObserver::observe(const dem::DemState& state, const dem::ContactLaws& laws) {
+  if (state.step < options_.first_step || state.step > options_.last_step || (state.step - options_.first_step) % options_.every != 0) return;
+  profile_.add(snapshot_of(state, laws, scratch_));
+}
+
+}  // namespace bagnold::cg
