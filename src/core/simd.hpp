@@ -1,0 +1,163 @@
+// A pack of numbers that behaves like one: the laws, written for any number type, run on it unchanged. Arithmetic is
+// the compiler's own vector type, which every x86-64 can execute; square roots, masks and gathers use AVX-512 or AVX2
+// where the build has them. A pack of two registers gives the processor two independent chains to interleave.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are never passed between objects built differently
+
+namespace bagnold {
+
+// The name of the variant is part of every symbol, so that builds of two variants can be linked together.
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(BAGNOLD_SIMD_PLAIN)
+#define BAGNOLD_AVX512 1
+inline namespace avx512 {
+#elif defined(__AVX2__) && !defined(BAGNOLD_SIMD_PLAIN)
+inline namespace avx2 {
+#else
+inline namespace plain {
+#endif
+
+inline constexpr int register_lanes = 8;
+using Register = double __attribute__((vector_size(64)));
+
+namespace detail {
+
+#ifdef BAGNOLD_AVX512
+using Bits = __mmask8;
+inline Bits less(Register a, Register b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+inline Register blend(Bits m, Register a, Register b) { return _mm512_mask_mov_pd(b, m, a); }
+inline Register least(Register a, Register b) { return _mm512_maskz_min_pd(0xff, a, b); }
+inline Register most(Register a, Register b) { return _mm512_maskz_max_pd(0xff, a, b); }
+inline Register magnitude(Register a) { return _mm512_abs_pd(a); }
+inline std::uint32_t to_integer(Bits m) { return m; }
+// 1/sqrt(1 - e) = 1 + e/2 + 3 e^2/8 + 5 e^3/16 + O(e^4), with e = 1 - a y^2 < 2^-13 for the 14-bit estimate y.
+inline Register inverse_root(Register a) {
+  // (The zero-masking forms, with every lane kept, are the plain instructions without a false warning.)
+  const Register y = _mm512_maskz_rsqrt14_pd(0xff, a), e = 1.0 - (a * y) * y;
+  const Register series = (0.3125 * e + 0.375) * e + 0.5;
+  return (series * e) * y + y;
+}
+// One Newton step on a y removes the last rounding error; tiny keeps 0 * infinity out.
+inline Register root(Register a) {
+  const Register b = most(a, Register{} + 1e-300), y = inverse_root(b), s = b * y;
+  return blend(less(Register{}, a), s + (0.5 * y) * (b - s * s), Register{});
+}
+#else
+using Bits = std::int64_t __attribute__((vector_size(64)));
+inline Bits less(Register a, Register b) { return a < b; }
+inline Register blend(Bits m, Register a, Register b) { return m ? a : b; }
+inline Register least(Register a, Register b) { return a < b ? a : b; }
+inline Register most(Register a, Register b) { return a > b ? a : b; }
+inline Register magnitude(Register a) { return a < 0.0 ? -a : a; }
+inline std::uint32_t to_integer(Bits m) {
+  std::uint32_t bits = 0;
+  for (int k = 0; k < register_lanes; ++k) bits |= (m[k] != 0 ? 1u : 0u) << k;
+  return bits;
+}
+inline Register root(Register a) {
+#if defined(__AVX2__) && !defined(BAGNOLD_SIMD_PLAIN)
+  __m256d half[2];
+  std::memcpy(half, &a, sizeof a);
+  for (__m256d& h : half) h = _mm256_sqrt_pd(h);
+  std::memcpy(&a, half, sizeof a);
+#else
+  for (int k = 0; k < register_lanes; ++k) a[k] = std::sqrt(a[k]);
+#endif
+  return a;
+}
+inline Register inverse_root(Register a) { return 1.0 / root(a); }
+#endif
+
+}  // namespace detail
+
+template <int Registers>
+struct Mask {
+  detail::Bits m[Registers];
+};
+
+template <int Registers>
+struct Pack {
+  static constexpr int lanes = Registers * register_lanes;
+  Register v[Registers];
+
+  Pack() = default;
+  Pack(double a) {  // every lane
+    for (auto& r : v) r = Register{} + a;
+  }
+  static Pack load(const double* p) {  // aligned to 64 bytes
+    Pack a;
+    for (int u = 0; u < Registers; ++u) a.v[u] = *reinterpret_cast<const Register*>(p + u * register_lanes);
+    return a;
+  }
+  void store(double* p) const {
+    for (int u = 0; u < Registers; ++u) *reinterpret_cast<Register*>(p + u * register_lanes) = v[u];
+  }
+  double operator[](int lane) const { return v[lane / register_lanes][lane % register_lanes]; }
+  void set(int lane, double a) { v[lane / register_lanes][lane % register_lanes] = a; }
+
+  friend Pack operator+(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x + y; }); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x - y; }); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x * y; }); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x / y; }); }
+  friend Pack min(const Pack& a, const Pack& b) { return each(a, b, detail::least); }
+  friend Pack max(const Pack& a, const Pack& b) { return each(a, b, detail::most); }
+  friend Pack abs(const Pack& a) { return each(a, detail::magnitude); }
+  friend Pack sqrt(const Pack& a) { return each(a, detail::root); }
+  friend Pack rsqrt(const Pack& a) { return each(a, detail::inverse_root); }
+  friend Mask<Registers> operator<(const Pack& a, const Pack& b) {
+    Mask<Registers> r;
+    for (int u = 0; u < Registers; ++u) r.m[u] = detail::less(a.v[u], b.v[u]);
+    return r;
+  }
+  friend Mask<Registers> operator>(const Pack& a, const Pack& b) { return b < a; }
+  friend Pack select(const Mask<Registers>& m, const Pack& a, const Pack& b) {
+    Pack r;
+    for (int u = 0; u < Registers; ++u) r.v[u] = detail::blend(m.m[u], a.v[u], b.v[u]);
+    return r;
+  }
+
+ private:
+  template <class F>
+  static Pack each(const Pack& a, F&& f) {
+    Pack r;
+    for (int u = 0; u < Registers; ++u) r.v[u] = f(a.v[u]);
+    return r;
+  }
+  template <class F>
+  static Pack each(const Pack& a, const Pack& b, F&& f) {
+    Pack r;
+    for (int u = 0; u < Registers; ++u) r.v[u] = f(a.v[u], b.v[u]);
+    return r;
+  }
+};
+
+// Bit k is lane k.
+template <int Registers>
+std::uint32_t to_integer(const Mask<Registers>& m) {
+  std::uint32_t bits = 0;
+  for (int u = 0; u < Registers; ++u) bits |= detail::to_integer(m.m[u]) << (u * register_lanes);
+  return bits;
+}
+template <int Registers>
+bool any(const Mask<Registers>& m) {
+  return to_integer(m) != 0;
+}
+
+// The integer nearest to a, for |a| < 2^51: adding 1.5 * 2^52 leaves no room for a fraction.
+template <int Registers>
+Pack<Registers> nearest_integer(const Pack<Registers>& a) {
+  const Pack<Registers> magic = 6755399441055744.0;
+  return (a + magic) - magic;
+}
+
+}  // inline namespace
+}  // namespace bagnold
+
+#pragma GCC diagnostic pop
