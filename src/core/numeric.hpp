@@ -13,6 +13,7 @@ constexpr bool any(bool mask) { return mask; }
 constexpr double min(double a, double b) { return b < a ? b : a; }
 constexpr double max(double a, double b) { return a < b ? b : a; }
 inline double sqrt(double a) { return std::sqrt(a); }
+inline double rsqrt(double a) { return 1 / std::sqrt(a); }
 inline double abs(double a) { return std::fabs(a); }
 
 // A vector whose components are of any number type.

@@ -66,7 +66,7 @@ std::vector<laws::NominalPair> nominal_pairs(const Tables<laws::NormalLaws>& nor
   std::visit(
       [&](const auto& table) {
         for (const auto& law : table) {
-          const auto response = law.respond(0.0, {1, 1, 0.5 / pair_mass, 0.5 / pair_mass});
+          const auto response = law.respond(0.0, laws::sizes(1, 1, 0.5 / pair_mass, 0.5 / pair_mass));
           nominal.push_back({pair_mass, std::decay_t<decltype(law)>::constant_stiffness, response.stiffness, response.damping});
         }
       },

@@ -50,7 +50,7 @@ std::vector<Occurrence> occurrences(const DemState& state, std::size_t species) 
 
 template <class Law>
 ContactType describe(const Law& law, const Size& size, const ContactModel& model, std::size_t a, std::size_t b) {
-  const auto normal = law.normal.respond(0.01 * size.reduced_radius(), size);
+  const auto normal = law.normal.respond(0.01 * size.reduced_radius, size);
   const laws::Collision collision = law.normal.collision(size);
   return {.a = model.species[a], .b = model.species[b], .reduced_mass = size.reduced_mass(), .kn = normal.stiffness,
           .gamma_n = normal.damping, .kt = law.tangential.stiffness(normal), .gamma_t = law.tangential.damping(normal),
@@ -69,7 +69,7 @@ std::vector<ContactType> contact_types(const DemState& state, const ContactModel
         const Occurrence &i = found[a], &j = found[b];
         if (!i.moves() || (j.moves() && b < a)) continue;  // fixed bodies never meet
         if (!j.moves() && j.fixed == 0 && !j.wall) continue;
-        const Size size{1 / i.radius, j.radius > 0 ? 1 / j.radius : 0.0, 1 / i.mass, j.moves() ? 1 / j.mass : 0.0};
+        const Size size = laws::sizes(1 / i.radius, j.radius > 0 ? 1 / j.radius : 0.0, 1 / i.mass, j.moves() ? 1 / j.mass : 0.0);
         types.push_back(describe(tables.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)), size, model, a, b));
       }
   });

@@ -37,8 +37,9 @@ void balance_ledger(DemState& state, const ContactLaws& laws) {
       // The dashpots act on half-step velocities; their power is their force at the velocities of the same time.
       Motion motion = c.motion;
       motion.v = numbers(full_step_velocity(state, c.i) - (c.j < 0 ? Vec3{} : full_step_velocity(state, c.j)));
-      motion.omega_i = numbers(full_step_omega(state, c.i));
-      if (c.j >= 0) motion.omega_j = numbers(full_step_omega(state, c.j));
+      const Vec3 omega_i = full_step_omega(state, c.i), omega_j = c.j < 0 ? Vec3{} : full_step_omega(state, c.j);
+      motion.spin_sum = numbers(omega_i + omega_j);
+      motion.spin_difference = numbers(omega_i - omega_j);
       const Geometry now = laws::pair_geometry(motion);
       power.normal -= c.force.normal_damping * now.vn;
       power.tangential -= dot(c.force.tangential_damping, now.slip);

@@ -20,24 +20,24 @@ struct HertzNormal {
   N modulus;  // E*, force/area
   N alpha;    // damping number, -
   NormalResponse<N> respond(N overlap, const PairSize<N>& size) const {
-    const N k = N(4.0 / 3) * modulus * sqrt(size.reduced_radius());
+    const N k = N(4.0 / 3) * modulus * sqrt(size.reduced_radius);
     const N root = sqrt(overlap);
     return {k * overlap * root, alpha * sqrt(size.reduced_mass() * k * root), N(1.5) * k * root};
   }
   N energy(N overlap, const PairSize<N>& size) const {
-    return N(8.0 / 15) * modulus * sqrt(size.reduced_radius() * overlap) * overlap * overlap;
+    return N(8.0 / 15) * modulus * sqrt(size.reduced_radius * overlap) * overlap * overlap;
   }
 
   // Collision time of an elastic pair that meets at `speed` (Landau & Lifshitz, Theory of Elasticity, section 9):
   //   tc = (2/v) (5 m v^2/(4 K))^(2/5) integral_0^1 dx/sqrt(1 - x^(5/2)).
   double collision_time(const PairSize<double>& size, double speed) const {
     constexpr double integral = 1.4716378;  // sqrt(pi) Gamma(2/5) / (5/2 Gamma(9/10))
-    const double k = 4.0 / 3 * modulus * std::sqrt(size.reduced_radius());
+    const double k = 4.0 / 3 * modulus * std::sqrt(size.reduced_radius);
     return 2 / speed * std::pow(1.25 * size.reduced_mass() * speed * speed / k, 0.4) * integral;
   }
   // At the speed that would reach an overlap of 1 % of the reduced radius.
   Collision collision(const PairSize<double>& size) const {
-    const double speed = std::sqrt(2 * energy(0.01 * size.reduced_radius(), size) / size.reduced_mass());
+    const double speed = std::sqrt(2 * energy(0.01 * size.reduced_radius, size) / size.reduced_mass());
     return {collision_time(size, speed), std::exp(-alpha * std::numbers::pi / std::sqrt(5 - alpha * alpha))};
   }
 };

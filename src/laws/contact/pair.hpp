@@ -8,14 +8,15 @@
 
 namespace bagnold::laws {
 
-// Motion of body i relative to body j, and what it is made of. For a plane, j has radius 0 and r points from the
-// foot of the perpendicular to the centre of i.
-template <class N>
+// Motion of body i relative to body j. For a plane, j has radius 0 and r points from the foot of the perpendicular to
+// the centre of i. EqualRadii: all bodies have the same, and `spin_difference` and `size_difference` are not read
+// unless they roll.
+template <class N, bool EqualRadii = false>
 struct PairMotion {
-  Vec3Of<N> r, v;               // r_i - r_j, v_i - v_j
-  Vec3Of<N> omega_i, omega_j;
-  N radius_i, radius_j;
-  N turns;                      // 1: the normal turns with the pair; 0: it is that of a plane
+  Vec3Of<N> r, v;                       // r_i - r_j, v_i - v_j
+  Vec3Of<N> spin_sum, spin_difference;  // omega_i + omega_j, omega_i - omega_j
+  N reach, size_difference;             // r_i + r_j, r_i - r_j
+  N turns;                              // 1: the normal turns with the pair; 0: it is that of a plane
 };
 
 template <class N>
@@ -48,21 +49,26 @@ struct PairLaw {
   Rolling rolling;
 };
 
-template <class N>
-PairGeometry<N> pair_geometry(const PairMotion<N>& m) {
-  const N distance = sqrt(dot(m.r, m.r)), inverse = N(1) / distance;
+// The arms, b_ij = -arm_i n and b_ji = +arm_j n, add up to the distance and differ by r_i - r_j, so the spin terms of
+// the slip are arm_i omega_i + arm_j omega_j = (|r| (omega_i + omega_j) + (r_i - r_j) (omega_i - omega_j))/2, times n.
+template <class N, bool EqualRadii>
+PairGeometry<N> pair_geometry(const PairMotion<N, EqualRadii>& m) {
+  const N distance2 = dot(m.r, m.r), inverse = rsqrt(distance2), distance = distance2 * inverse;
   PairGeometry<N> g;
   g.n = inverse * m.r;
   g.v = m.v;
-  g.overlap = m.radius_i + m.radius_j - distance;
+  g.overlap = m.reach - distance;
   g.vn = dot(m.v, g.n);
   g.turn_rate = m.turns * inverse;
-  g.arm_i = m.radius_i - N(0.5) * g.overlap;
-  g.arm_j = m.radius_j - N(0.5) * g.overlap;
-  // b_ij = -arm_i n, b_ji = +arm_j n
-  g.slip = m.v - g.vn * g.n - cross(g.arm_i * m.omega_i + g.arm_j * m.omega_j, g.n);
-  const Vec3Of<N> relative = m.omega_i - m.omega_j;
-  g.spin = relative - dot(relative, g.n) * g.n;
+  g.arm_i = g.arm_j = N(0.5) * distance;
+  g.slip = m.v - g.vn * g.n - N(0.5) * cross(m.spin_sum, m.r);
+  if constexpr (!EqualRadii) {
+    const N half = N(0.5) * m.size_difference;
+    g.slip = g.slip - half * cross(m.spin_difference, g.n);
+    g.arm_i = g.arm_i + half;
+    g.arm_j = g.arm_j - half;
+  }
+  g.spin = m.spin_difference - dot(m.spin_difference, g.n) * g.n;
   return g;
 }
 
@@ -109,7 +115,7 @@ void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairG
   const N limit = law.tangential.mu * abs(out.normal), trial2 = dot(force, force);
   const auto slides = trial2 > limit * limit;
   if (any(slides)) {
-    force = select(slides, limit / sqrt(trial2), N(1)) * force;
+    force = select(slides, limit * rsqrt(trial2), N(1)) * force;
     if constexpr (Advance) {
       const N minus_inverse = select(kt > N(0), N(-1) / kt, N(0));
       const Vec3Of<N> cut = minus_inverse * (force + gamma * g.slip);
@@ -143,7 +149,7 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
   // A spring at its limit slides, also when it is read again after having been cut to it.
   const auto slides = trial2 > N(1 - 1e-12) * limit * limit;
   if (any(slides)) {
-    const Vec3Of<N> cut = select(slides, limit / sqrt(trial2), N(1)) * roll;
+    const Vec3Of<N> cut = select(slides, limit * rsqrt(trial2), N(1)) * roll;
     if constexpr (Advance) {
       out.roll_loss = out.roll_loss + N(0.5) * kr * (dot(roll, roll) - dot(cut, cut));
       roll = cut;

@@ -17,13 +17,13 @@ struct SpringSliderRolling {
   static constexpr bool active = true;
   N mu, eta;
   N stiffness(const NormalResponse<N>& normal, const PairSize<N>& size) const {
-    const N arm = mu * size.reduced_radius();
+    const N arm = mu * size.reduced_radius;
     return N(2.25) * normal.stiffness * arm * arm;
   }
   N damping(N stiffness, const PairSize<N>& size) const {
     return N(2) * eta * sqrt(stiffness * size.rolling_inertia());
   }
-  N limit(N normal_force, const PairSize<N>& size) const { return mu * size.reduced_radius() * abs(normal_force); }
+  N limit(N normal_force, const PairSize<N>& size) const { return mu * size.reduced_radius * abs(normal_force); }
 };
 
 struct SpringSlider {
