@@ -80,9 +80,9 @@ std::vector<std::function<void()>> read_state(const H5File& file, const std::vec
   };
 
   std::vector<std::function<void()>> take_over;
-  for (const auto& [name, array] : state) {
-    const auto dataset = "state/" + name;
-    if (!file.exists(dataset)) throw mismatch(fmt::format("no array '{}'", name));
+  for (const NamedArray& entry : state) {
+    const auto dataset = "state/" + entry.name;
+    if (!file.exists(dataset)) throw mismatch(fmt::format("no array '{}'", entry.name));
     std::visit(
         [&](auto* target) {
           using T = std::remove_pointer_t<decltype(target)>;
@@ -92,11 +92,11 @@ std::vector<std::function<void()>> read_state(const H5File& file, const std::vec
             });
           } else {
             const auto values = read_array<T>(file, dataset);
-            if (values.size() != 1) throw mismatch(fmt::format("'{}' is not a single number", name));
+            if (values.size() != 1) throw mismatch(fmt::format("'{}' is not a single number", entry.name));
             take_over.push_back([target, value = values[0]] { *target = value; });
           }
         },
-        array);
+        entry.array);
   }
   std::vector<std::string> stored;
   collect_datasets(file, "state", stored);
@@ -138,17 +138,18 @@ void write_checkpoint(const std::filesystem::path& directory, const std::vector<
     write_provenance(file, provenance);
     file.attribute("/", "format", format_version);
     file.create_group("state");
-    for (const auto& [name, array] : state) {
+    for (const NamedArray& entry : state) {
+      const auto dataset = "state/" + entry.name;
       std::visit(
           [&](const auto* source) {
             using T = std::remove_cvref_t<decltype(*source)>;
             if constexpr (is_vector<T>) {
-              write_array(file, "state/" + name, std::span<const typename T::value_type>(*source));
+              write_array(file, dataset, std::span<const typename T::value_type>(*source));
             } else {
-              write_array(file, "state/" + name, std::span<const T>(source, 1));
+              write_array(file, dataset, std::span<const T>(source, 1));
             }
           },
-          array);
+          entry.array);
     }
     file.attribute("/", "complete", 1);
     file.close();
