@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/error.hpp"
+
 namespace bagnold::cg {
 namespace {
 
@@ -15,37 +17,18 @@ void add_items(std::vector<double>& to, const std::vector<double>& items, std::s
 }  // namespace
 
 BlockedProfile::BlockedProfile(const laws::CgKernels::Any& kernel, double spacing, const Box& box, std::int64_t samples_expected)
-    : current_(make_moments(kernel, make_lattice(kernel, spacing), box)),
+    : current_(make_moments(kernel, make_lattice(kernel, spacing), box)), closed_(current_),
       block_samples_(std::max<std::int64_t>(1, (samples_expected + most_blocks - 1) / most_blocks)) {}
 
 void BlockedProfile::add(const Snapshot& snapshot) {
   if (current_.samples == 0) begin_ = snapshot.time;
+  if (samples() == 0) start_ = snapshot.time;
   end_ = snapshot.time;
   add_snapshot(current_, snapshot, scratch_);
   if (current_.samples >= block_samples_) close_block();
 }
 
-std::int64_t BlockedProfile::samples() const {
-  double sum = static_cast<double>(current_.samples);
-  for (std::size_t b = 0; b < static_cast<std::size_t>(complete_blocks()); ++b) sum += scalars_[b * scalars_per_block + 2];
-  return static_cast<std::int64_t>(sum);
-}
-
-std::vector<double> BlockedProfile::current_scalars() const {
-  const Vec3& f = current_.base_force;
-  return {begin_, end_, static_cast<double>(current_.samples), current_.contacts, f.x, f.y, f.z};
-}
-
-std::vector<double> BlockedProfile::current_rows() const {
-  const ProfileSums sums = evaluate(current_, first_, count_);
-  std::vector<double> rows;
-  rows.reserve(static_cast<std::size_t>(count_) * row_size);
-  for (std::size_t n = 0; n < sums.value.size(); ++n) {
-    rows.insert(rows.end(), sums.value[n].begin(), sums.value[n].end());
-    rows.insert(rows.end(), sums.slope[n].begin(), sums.slope[n].end());
-  }
-  return rows;
-}
+std::int64_t BlockedProfile::samples() const { return current_.samples + closed_.samples; }
 
 // Extends every stored block to more nodes. All sums are constant beyond the nodes they were evaluated at, so the
 // outermost row continues, without slope.
@@ -70,9 +53,14 @@ void BlockedProfile::widen(const NodeRange& range) {
 
 void BlockedProfile::close_block() {
   widen(reach(current_));
-  const std::vector<double> rows = current_rows(), scalars = current_scalars();
-  rows_.insert(rows_.end(), rows.begin(), rows.end());
-  scalars_.insert(scalars_.end(), scalars.begin(), scalars.end());
+  const ProfileSums sums = evaluate(current_, first_, count_);
+  for (std::size_t n = 0; n < sums.value.size(); ++n) {
+    rows_.insert(rows_.end(), sums.value[n].begin(), sums.value[n].end());
+    rows_.insert(rows_.end(), sums.slope[n].begin(), sums.slope[n].end());
+  }
+  const Vec3& f = current_.base_force;
+  scalars_.insert(scalars_.end(), {begin_, end_, static_cast<double>(current_.samples), current_.contacts, f.x, f.y, f.z});
+  add_moments(closed_, current_);
   clear(current_);
   if (complete_blocks() == most_blocks) merge_neighbours();
 }
@@ -134,31 +122,63 @@ MeanProfile BlockedProfile::mean_without(std::int64_t first, std::int64_t blocks
   return m;
 }
 
-MeanProfile BlockedProfile::mean() const {
-  if (current_.samples == 0) return complete_blocks() > 0 ? mean(0, complete_blocks()) : MeanProfile{};
-  BlockedProfile all = *this;   // with the unfinished block closed
-  all.block_samples_ = 0;
-  all.widen(reach(all.current_));
-  const std::vector<double> rows = all.current_rows(), scalars = all.current_scalars();
-  all.rows_.insert(all.rows_.end(), rows.begin(), rows.end());
-  all.scalars_.insert(all.scalars_.end(), scalars.begin(), scalars.end());
-  return all.mean(0, all.complete_blocks());
+ProfileMoments BlockedProfile::all_moments() const {
+  ProfileMoments all = closed_;
+  add_moments(all, current_);
+  return all;
+}
+
+MeanProfile BlockedProfile::mean_of(const ProfileMoments& all, bool averaged) const {
+  const NodeRange range = reach(all);
+  const ProfileSums sums = evaluate(all, range.first, range.count, averaged);
+  const double per_sample = all.samples > 0 ? 1 / static_cast<double>(all.samples) : 0;
+  MeanProfile m;
+  m.samples = all.samples;
+  m.begin = start_;
+  m.end = end_;
+  m.contacts = all.contacts * per_sample;
+  m.base_force = per_sample * all.base_force;
+  m.spacing = all.lattice.spacing;
+  m.kernel_width = std::visit([](const auto& k) { return k.width; }, all.kernel);
+  m.area = all.area;
+  m.value = sums.value;
+  m.slope = sums.slope;
+  for (auto* rows : {&m.value, &m.slope})
+    for (Row& row : *rows)
+      for (double& v : row) v *= per_sample;
+  for (std::int64_t n = 0; n < range.count; ++n) m.z.push_back(all.lattice.node(range.first + n));
+  return m;
+}
+
+MeanProfile BlockedProfile::mean() const { return mean_of(all_moments(), false); }
+MeanProfile BlockedProfile::interval_mean() const { return mean_of(all_moments(), true); }
+
+MeanProfile BlockedProfile::mean_with_width(double width) const {
+  ProfileMoments all = all_moments();
+  const auto* own = std::get_if<laws::CgGaussian>(&all.kernel);
+  if (!own || width < own->width / 8)
+    throw UnphysicalError("cg.width", "profiles of another width need a Gaussian kernel and at least an eighth of its width");
+  all.kernel = laws::CgGaussian{width};
+  return mean_of(all, false);
 }
 
 std::vector<NamedArray> BlockedProfile::state(const std::string& prefix) {
   std::vector<NamedArray> arrays;
-  const auto add_bins = [&](const std::string& name, BinMoments& m) {
-    arrays.push_back({prefix + name + "/first", &m.first});
-    arrays.push_back({prefix + name + "/count", &m.count});
-    arrays.push_back({prefix + name + "/moments", &m.data});
+  const auto add_moments_of = [&](const std::string& name, ProfileMoments& m) {
+    for (const auto& [part, bins] : {std::pair<std::string, BinMoments*>{"flow", &m.flow}, {"base", &m.base}}) {
+      arrays.push_back({prefix + name + "/" + part + "_first", &bins->first});
+      arrays.push_back({prefix + name + "/" + part + "_bins", &bins->count});
+      arrays.push_back({prefix + name + "/" + part + "_moments", &bins->data});
+    }
+    arrays.push_back({prefix + name + "/samples", &m.samples});
+    arrays.push_back({prefix + name + "/contacts", &m.contacts});
+    arrays.push_back({prefix + name + "/base_force_x", &m.base_force.x});
+    arrays.push_back({prefix + name + "/base_force_y", &m.base_force.y});
+    arrays.push_back({prefix + name + "/base_force_z", &m.base_force.z});
   };
-  add_bins("flow", current_.flow);
-  add_bins("base", current_.base);
-  arrays.push_back({prefix + "samples", &current_.samples});
-  arrays.push_back({prefix + "contacts", &current_.contacts});
-  arrays.push_back({prefix + "base_force_x", &current_.base_force.x});
-  arrays.push_back({prefix + "base_force_y", &current_.base_force.y});
-  arrays.push_back({prefix + "base_force_z", &current_.base_force.z});
+  add_moments_of("block", current_);
+  add_moments_of("closed", closed_);
+  arrays.push_back({prefix + "start", &start_});
   arrays.push_back({prefix + "begin", &begin_});
   arrays.push_back({prefix + "end", &end_});
   arrays.push_back({prefix + "block_samples", &block_samples_});

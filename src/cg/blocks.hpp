@@ -32,6 +32,11 @@ class BlockedProfile {
   std::int64_t complete_blocks() const { return static_cast<std::int64_t>(scalars_.size()) / scalars_per_block; }
 
   MeanProfile mean() const;                                               // of every sample
+  // The same with another width of a Gaussian kernel, at least an eighth of the own one: the sums know nothing of the
+  // kernel but how fine their bins are. Throws UnphysicalError otherwise.
+  MeanProfile mean_with_width(double width) const;
+  // Means over intervals of one spacing about the nodes instead of values at the nodes.
+  MeanProfile interval_mean() const;
   MeanProfile mean(std::int64_t first_block, std::int64_t blocks) const;  // of complete blocks
   // Of all complete blocks but [first_block, first_block + blocks): what a jackknife asks for.
   MeanProfile mean_without(std::int64_t first_block, std::int64_t blocks) const;
@@ -45,17 +50,16 @@ class BlockedProfile {
   static constexpr std::int64_t scalars_per_block = 7;   // begin, end, samples, contacts, base force
   static constexpr std::size_t row_size = 2 * kChannels;  // sums and their slopes
 
-  // Node sums of the current block in the layout of rows_, and its scalars.
-  std::vector<double> current_rows() const;
-  std::vector<double> current_scalars() const;
+  MeanProfile mean_of(const ProfileMoments& all, bool averaged) const;
+  ProfileMoments all_moments() const;        // of every sample
   void widen(const NodeRange& range);
   void close_block();
   void merge_neighbours();
   MeanProfile average(const std::vector<double>& rows, const std::vector<double>& scalars) const;
 
-  ProfileMoments current_;
+  ProfileMoments current_, closed_;         // of the unfinished block, of all others together
   ProfileScratch scratch_;
-  double begin_ = 0, end_ = 0;              // of the current block
+  double start_ = 0, begin_ = 0, end_ = 0;  // first sample of all, first and last of the current block
   std::int64_t block_samples_ = 1;
   std::int64_t first_ = 0, count_ = 0;      // nodes of rows_
   std::vector<double> scalars_, rows_;      // of complete blocks: [block][scalar], [block][node][row_size]

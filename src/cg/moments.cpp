@@ -300,6 +300,20 @@ void clear(ProfileMoments& p) {
   std::fill(p.base.data.begin(), p.base.data.end(), 0.0);
 }
 
+void add_moments(ProfileMoments& to, const ProfileMoments& from) {
+  const auto add_bins = [](BinMoments& a, const BinMoments& b) {
+    if (b.count == 0) return;
+    for (std::int64_t edge : {b.first, b.first + b.count - 1}) cover(a, edge, 0);
+    double* data = bin_data(a, b.first);
+    for (std::size_t k = 0; k < b.data.size(); ++k) data[k] += b.data[k];
+  };
+  add_bins(to.flow, from.flow);
+  add_bins(to.base, from.base);
+  to.samples += from.samples;
+  to.contacts += from.contacts;
+  to.base_force += from.base_force;
+}
+
 ProfileSums evaluate(const ProfileMoments& p, std::int64_t first, std::int64_t count, bool averaged) {
   const Table table = std::visit([&](const auto& k) { return make_table(k, p.lattice, averaged); }, p.kernel);
   const std::vector<double> flow_below = totals_below(p.flow, kCarried), base_below = totals_below(p.base, 0);

@@ -66,6 +66,7 @@ ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& l
 // Throws NumericalError if a grain is so far away that it cannot be part of a profile (or its position is not finite).
 void add_snapshot(ProfileMoments& moments, const Snapshot& snapshot, ProfileScratch& scratch);
 void clear(ProfileMoments& moments);   // keeps the bins
+void add_moments(ProfileMoments& to, const ProfileMoments& from);   // of the same kernel and lattice
 
 // Sums at nodes [first, first + count) and their derivatives along z, per unit area; not divided by samples.
 // `averaged`: means over intervals of one spacing about the nodes (mass and force are then exact per interval) instead of
