@@ -1,0 +1,141 @@
+// Coarse-graining of a running engine: the balance of momentum in time, and that looking changes nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "cg/from_dem.hpp"
+#include "core/random.hpp"
+#include "dem/algorithm.hpp"
+
+using namespace bagnold;
+
+namespace {
+
+// Grains that slide, collide and hit the grains of a base, periodic in x and y.
+dem::DemState small_chute(double dt) {
+  dem::DemState s;
+  s.box = {.origin = {0, 0, 0}, .length = {4, 4, 1}, .periodic = {true, true, false}};
+  s.gravity = {0.4, 0, -0.9};
+  s.dt = dt;
+  const auto add = [&](const Vec3& x, const Vec3& v, double d) {
+    dem::Grains& g = s.grains;
+    g.x.push_back(x);
+    g.v.push_back(v);
+    g.omega.push_back({});
+    g.diameter.push_back(d);
+    g.mass.push_back(d * d * d);
+    g.inertia.push_back(0.1 * d * d * d * d * d);
+    g.species.push_back(0);
+    g.id.push_back(static_cast<std::int64_t>(g.id.size()));
+  };
+  std::uint64_t item = 0;
+  const auto u = [&](std::uint32_t k) { return 2 * random::uniform(3, random::Stream::test, item, k) - 1; };
+  for (int k = 0; k < 5; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i, ++item)
+        add({i + 0.5 + 0.01 * u(0), j + 0.5 + 0.01 * u(1), k + 0.45 + 0.01 * u(2)}, {1 + u(3), u(4), u(5)}, 0.98 + 0.015 * u(6));
+  s.grains.flowing = static_cast<std::int64_t>(item);
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i, ++item) add({i + 0.4 + 0.1 * u(0), j + 0.6 + 0.1 * u(1), -0.45 + 0.1 * u(2)}, {}, 1);
+  return s;
+}
+
+dem::ContactLaws soft_laws() {
+  laws::Linear normal;
+  normal.stiffness = 2000;
+  normal.damping = 2;
+  laws::LinearHistory tangential;
+  tangential.friction = 0.5;
+  return dem::compile(dem::uniform_model({"grain"}, {normal, tangential, laws::NoRollingResistance{}}), 0.5);
+}
+
+cg::ProfileSums sums_of(const dem::DemState& s, const dem::ContactLaws& laws) {
+  const laws::CgKernels::Any kernel = laws::CgGaussian{0.4};
+  auto moments = cg::make_moments(kernel, cg::make_lattice(kernel, 0.25), s.box);
+  cg::DemScratch scratch;
+  cg::ProfileScratch profile_scratch;
+  cg::add_snapshot(moments, cg::snapshot_of(s, laws, scratch), profile_scratch);
+  return cg::evaluate(moments, -12, 50);
+}
+
+// Largest deviation of (p(t + dt) - p(t - dt))/2dt from div sigma + rho g - d(Pi)/dz at t, over the largest term.
+double momentum_error(double dt) {
+  const auto laws = soft_laws();
+  dem::DemState s = small_chute(dt);
+  dem::prepare(s, laws);
+  dem::advance(s, laws, static_cast<std::int64_t>(std::llround(0.5 / dt)) - 1);
+  const auto before = sums_of(s, laws);
+  dem::advance(s, laws, 1);
+  const auto now = sums_of(s, laws);
+  dem::advance(s, laws, 1);
+  const auto after = sums_of(s, laws);
+  double peak = 0, worst = 0;
+  for (std::size_t n = 0; n < now.value.size(); ++n)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double rate = (after.value[n][cg::kMomentum + a] - before.value[n][cg::kMomentum + a]) / (2 * dt);
+      const double balance = now.slope[n][cg::kContact + 3 * a + 2] + now.slope[n][cg::kBase + 3 * a + 2] - now.slope[n][cg::kFlux + cg::symmetric(a, 2)] +
+                             now.value[n][cg::kMass] * s.gravity[static_cast<int>(a)];
+      peak = std::max(peak, std::abs(balance));
+      worst = std::max(worst, std::abs(rate - balance));
+    }
+  return worst / peak;
+}
+
+}  // namespace
+
+// dp/dt = div sigma + rho g - d(rho V V)/dz at every height, base included; the rest is the finite difference in time.
+TEST(WithEngine, MomentumBalanceInTimeConverges) {
+  const double coarse = momentum_error(4e-4), fine = momentum_error(1e-4);
+  EXPECT_LT(fine, 5e-3);
+  EXPECT_LT(fine, 0.5 * coarse);
+}
+
+TEST(WithEngine, MassBalanceInTime) {
+  const auto laws = soft_laws();
+  const double dt = 1e-4;
+  dem::DemState s = small_chute(dt);
+  dem::prepare(s, laws);
+  dem::advance(s, laws, 3000);
+  const auto before = sums_of(s, laws);
+  dem::advance(s, laws, 1);
+  const auto now = sums_of(s, laws);
+  dem::advance(s, laws, 1);
+  const auto after = sums_of(s, laws);
+  double peak = 0, worst = 0;
+  for (std::size_t n = 0; n < now.value.size(); ++n) {
+    const double rate = (after.value[n][cg::kMass] - before.value[n][cg::kMass]) / (2 * dt);
+    peak = std::max(peak, std::abs(now.slope[n][cg::kMomentum + 2]));
+    worst = std::max(worst, std::abs(rate + now.slope[n][cg::kMomentum + 2]));
+  }
+  EXPECT_LT(worst, 1e-4 * peak);
+}
+
+TEST(WithEngine, LookingChangesNothing) {
+  const auto laws = soft_laws();
+  dem::DemState alone = small_chute(2e-4), watched = small_chute(2e-4);
+  dem::prepare(alone, laws);
+  dem::prepare(watched, laws);
+  cg::ProfileObserver observer({.kernel = laws::CgGaussian{}, .first_step = 100, .last_step = 900, .every = 25}, watched.box);
+  dem::advance(alone, laws, 1000);
+  for (int k = 0; k < 1000; ++k) {
+    dem::advance(watched, laws, 1);
+    observer.observe(watched, laws);
+  }
+  EXPECT_EQ(observer.profile().samples(), 33);
+  ASSERT_EQ(alone.grains.x.size(), watched.grains.x.size());
+  for (std::size_t i = 0; i < alone.grains.x.size(); ++i) {
+    EXPECT_EQ(alone.grains.x[i], watched.grains.x[i]);
+    EXPECT_EQ(alone.grains.v[i], watched.grains.v[i]);
+    EXPECT_EQ(alone.grains.omega[i], watched.grains.omega[i]);
+  }
+  EXPECT_EQ(alone.pairs.spring, watched.pairs.spring);
+}
+
+TEST(WithEngine, SampleStepsAreThoseAskedFor) {
+  const cg::ProfileObserver observer({.kernel = laws::CgGaussian{}, .first_step = 100, .last_step = 900, .every = 25}, small_chute(1e-4).box);
+  EXPECT_EQ(observer.next_step(0), 100);
+  EXPECT_EQ(observer.next_step(99), 100);
+  EXPECT_EQ(observer.next_step(100), 125);
+  EXPECT_EQ(observer.next_step(124), 125);
+}
