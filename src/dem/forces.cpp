@@ -22,13 +22,16 @@ struct Tally {
 };
 using Tallies = std::array<Tally, max_parts>;
 
-// Energy the springs still hold when their contact opens.
+// Energy lost with the springs of a contact that opens: a last stretch, then all of it is cut.
 template <class Law>
 double energy_left(const Law& law, const Geometry& g, const Size& size, const History& history, double dt) {
   const auto normal = law.normal.respond(max(0.0, g.overlap + dt * g.vn), size);
-  double energy = 0.5 * law.tangential.stiffness(normal) * dot(history.spring, history.spring);
+  const auto lost_with = [&](double stiffness, const auto& spring, const auto& rate) {
+    return laws::slip_loss(stiffness, spring, laws::stretched(spring, rate, g, dt), {0, 0, 0});
+  };
+  double energy = lost_with(law.tangential.stiffness(normal), history.spring, g.slip);
   if constexpr (decltype(law.rolling)::active)
-    energy += 0.5 * law.rolling.stiffness(normal, size) * dot(history.roll, history.roll);
+    energy += lost_with(law.rolling.stiffness(normal, size), history.roll, g.spin);
   return energy;
 }
 

@@ -25,6 +25,7 @@ namespace {
 std::array<int, 3> shape_cells(CellGrid& grid, const Box& box, std::span<const Vec3> x, double cutoff) {
   std::array<int, 3> count{};
   Vec3 extent;
+  const double given = cutoff;
   cutoff *= 1 + 1e-9;  // so that rounding cannot put two close points two cells apart
   for (int k = 0; k < 3; ++k) {
     double length = box.length[k];
@@ -34,7 +35,7 @@ std::array<int, 3> shape_cells(CellGrid& grid, const Box& box, std::span<const V
       for (const Vec3& p : x) lo = std::min(lo, p[k]), hi = std::max(hi, p[k]);
       grid.origin[k] = lo;
       length = hi - lo;
-    } else if (length < cutoff) {
+    } else if (length < given) {
       throw UnphysicalError("box", "a periodic length is below the largest grain plus the neighbour margin");
     }
     extent[k] = length;

@@ -33,8 +33,17 @@ DemState oblique_pair(double dt) {
   return s;
 }
 
+// No dissipation, no sliding. kt = kn/2: with 2/7 kn the tangential spring would swing back to 0 just as the contact
+// opens, and there would be no jump.
+ContactLaws conservative() {
+  laws::LinearHistory tangential;
+  tangential.tangential_stiffness = 1e5;
+  tangential.friction = INFINITY;
+  return compile(uniform_model({"grain"}, {testing::linear(2e5, 0), tangential, laws::NoRollingResistance{}}), 0.5);
+}
+
 TEST(Figure15, EnergyIsKeptWithoutDissipationAndSliding) {
-  const ContactLaws laws = testing::paper_laws(0, INFINITY);
+  const ContactLaws laws = conservative();
   DemState s = oblique_pair(tc / 50);
   prepare(s, laws);
   const double first = energies(s, laws).total();
@@ -45,19 +54,19 @@ TEST(Figure15, EnergyIsKeptWithoutDissipationAndSliding) {
   }
   ASSERT_TRUE(contacts(s, laws).empty());
   EXPECT_GT(most_tangential, 0.01 * first);       // the collision is oblique
-  EXPECT_GT(s.ledger.opened, 1e-4 * first);       // the jump at the end of contact: internal energy
+  EXPECT_GT(s.ledger.opened, 1e-2 * first);       // the jump at the end of contact: internal energy
   EXPECT_EQ(s.ledger.sliding, 0);
   EXPECT_EQ(lost(s.ledger), s.ledger.opened);
   EXPECT_LT(std::abs(energies(s, laws).total() + lost(s.ledger) - first), 1e-3 * first);
 }
 
 TEST(Figure15, DriftIsOfSecondOrder) {
-  const ContactLaws laws = testing::paper_laws(0, INFINITY);
+  const ContactLaws laws = conservative();
   std::vector<double> r;
   for (const int n : {50, 100, 200, 400}) r.push_back(residual(oblique_pair(tc / n), laws, 2 * n, 1));
-  printf("fig15 %g %g %g %g\n", r[0], r[1], r[2], r[3]);
   EXPECT_LT(r[0], 1e-3);
-  EXPECT_LT(r[3], r[0] / 20);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(r[k + 1], r[k] / 3) << k;
+  std::cout << "drift at tc/50 .. tc/400: " << r[0] << ' ' << r[1] << ' ' << r[2] << ' ' << r[3] << '\n';
 }
 
 TEST(Ledger, ClosesForAPairWithDissipationAndSliding) {
@@ -65,9 +74,8 @@ TEST(Ledger, ClosesForAPairWithDissipationAndSliding) {
     const ContactLaws laws = testing::paper_laws(25, mu);
     std::vector<double> r;
     for (const int n : {50, 100, 200, 400}) r.push_back(residual(oblique_pair(tc / n), laws, 2 * n, 1));
-    printf("ledger %g %g %g %g\n", r[0], r[1], r[2], r[3]);
     EXPECT_LT(r[0], 1e-3);
-    EXPECT_LT(r[3], r[0] / 6);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(r[k + 1], r[k] / 3) << k;
   }
 }
 
@@ -94,7 +102,7 @@ TEST(Ledger, ClosesForACrowd) {
       s.dt = tc / n;
       r.push_back(residual(s, laws, 20, 4 * n));
     }
-    printf("crowd %g %g\n", r[0], r[1]);
+    RecordProperty(hertz ? "hertz" : "linear", std::to_string(r[0]));
     EXPECT_LT(r[0], 1e-3);
     EXPECT_LT(r[1], r[0] / 3);
   }

@@ -13,7 +13,7 @@ struct Units {
 
 DemState run(const Units& u, const PairParameters& parameters, bool reorder) {
   DemState s = testing::random_packing(6, 0.95, 11);
-  s.walls = {{{0, 0, s.box.origin.z + 0.1}, {0, 0, 1}, 0}};
+  s.walls = {{{0, 0, s.box.origin.z - 0.45}, {0, 0, 1}, 0}};
   s.box.periodic[2] = false;
   s.gravity = {0.4 * u.length / (u.time * u.time), 0, -0.9 * u.length / (u.time * u.time)};
   s.dt = 1e-4 * u.time;

@@ -195,10 +195,10 @@ TEST(Bits, DoNotDependOnThreadsObservationOrInterruption) {
     set_threads(threads);
     DemState s = packing(7, 9);
     s.keep_ledger = true;
-    s.reorder_every = 50;
+    s.reorder_every = 20;
     prepare(s, laws);
     for (int n = 0; n < 6; ++n) {
-      advance(s, laws, 20);
+      advance(s, laws, 8);
       if (observe) {
         EXPECT_GT(energies(s, laws).kinetic(), 0);
         EXPECT_GT(contacts(s, laws).size(), 0U);
@@ -206,7 +206,7 @@ TEST(Bits, DoNotDependOnThreadsObservationOrInterruption) {
       if (interrupt) {  // into a fresh state made from the input, as a resumed run does
         DemState resumed = packing(7, 9);
         resumed.keep_ledger = true;
-        resumed.reorder_every = 50;
+        resumed.reorder_every = 20;
         auto from = named_arrays(s), to = named_arrays(resumed);
         for (std::size_t k = 0; k < from.size(); ++k)
           std::visit([&](auto* target) { *target = *std::get<decltype(target)>(from[k].array); }, to[k].array);

@@ -72,8 +72,6 @@ PairGeometry<N> pair_geometry(const PairMotion<N, EqualRadii>& m) {
   return g;
 }
 
-namespace detail {
-
 // Eq. 9: the spring stretches by the rate and turns with the pair.
 template <class N>
 Vec3Of<N> stretched(const Vec3Of<N>& spring, const Vec3Of<N>& rate, const PairGeometry<N>& g, N dt) {
@@ -96,7 +94,12 @@ N rescale(Vec3Of<N>& spring, N earlier, N now) {
   return N(0.5) * length2 * (earlier - now * factor * factor);
 }
 
-}  // namespace detail
+// Energy a slider takes that cuts a spring from `trial` to `cut`: the mean force over the step (its energy at half-step
+// velocities changes by exactly that), times the slip.
+template <class N>
+N slip_loss(N stiffness, const Vec3Of<N>& before, const Vec3Of<N>& trial, const Vec3Of<N>& cut) {
+  return N(0.5) * stiffness * dot(before + cut, trial - cut);
+}
 
 // Tangential part, algorithm 2. Advance: the springs move on by dt; otherwise the history is only read.
 template <bool Advance, class N, class Normal, class Tangential, class Rolling>
@@ -104,12 +107,14 @@ void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairG
                     const NormalResponse<N>& normal, N dt, PairHistory<N>& history, PairForce<N>& out) {
   const N kt = law.tangential.stiffness(normal), gamma = law.tangential.damping(normal);
   Vec3Of<N>& spring = history.spring;
+  Vec3Of<N> before = spring;
   if constexpr (Advance) {
     if constexpr (!Normal::constant_stiffness && !Tangential::constant_stiffness) {
-      const N earlier = kt * detail::earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
-      out.slide_loss = out.slide_loss + detail::rescale(spring, earlier, kt);
+      const N earlier = kt * earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
+      out.slide_loss = out.slide_loss + rescale(spring, earlier, kt);
+      before = spring;
     }
-    spring = detail::stretched(spring, g.slip, g, dt);
+    spring = stretched(spring, g.slip, g, dt);
   }
   Vec3Of<N> force = N(-1) * (kt * spring + gamma * g.slip);
   const N limit = law.tangential.mu * abs(out.normal), trial2 = dot(force, force);
@@ -119,8 +124,7 @@ void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairG
     if constexpr (Advance) {
       const N minus_inverse = select(kt > N(0), N(-1) / kt, N(0));
       const Vec3Of<N> cut = minus_inverse * (force + gamma * g.slip);
-      const N given_up = N(0.5) * kt * (dot(spring, spring) - dot(cut, cut));
-      out.slide_loss = out.slide_loss + select(slides, given_up, N(0));
+      out.slide_loss = out.slide_loss + select(slides, slip_loss(kt, before, spring, cut), N(0));
       spring = select(slides, cut, spring);
     }
   }
@@ -138,12 +142,14 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
                  const NormalResponse<N>& normal, N dt, PairHistory<N>& history, PairForce<N>& out) {
   const N kr = law.rolling.stiffness(normal, size), cr = law.rolling.damping(kr, size);
   Vec3Of<N>& roll = history.roll;
+  Vec3Of<N> before = roll;
   if constexpr (Advance) {
     if constexpr (!Normal::constant_stiffness) {
-      const N earlier = kr * detail::earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
-      out.roll_loss = out.roll_loss + detail::rescale(roll, earlier, kr);
+      const N earlier = kr * earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
+      out.roll_loss = out.roll_loss + rescale(roll, earlier, kr);
+      before = roll;
     }
-    roll = detail::stretched(roll, g.spin, g, dt);
+    roll = stretched(roll, g.spin, g, dt);
   }
   const N limit = law.rolling.limit(out.normal, size), trial2 = kr * kr * dot(roll, roll);
   // A spring at its limit slides, also when it is read again after having been cut to it.
@@ -151,7 +157,7 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
   if (any(slides)) {
     const Vec3Of<N> cut = select(slides, limit * rsqrt(trial2), N(1)) * roll;
     if constexpr (Advance) {
-      out.roll_loss = out.roll_loss + N(0.5) * kr * (dot(roll, roll) - dot(cut, cut));
+      out.roll_loss = out.roll_loss + slip_loss(kr, before, roll, cut);
       roll = cut;
     }
   }
