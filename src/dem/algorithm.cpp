@@ -45,6 +45,9 @@ void check(const DemState& state, const ContactLaws& laws) {
     if (wall.species < 0 || wall.species >= laws.species)
       throw UnphysicalError("walls", fmt::format("species {} does not exist", wall.species));
     if (!(std::abs(norm(wall.normal) - 1) < 1e-12)) throw UnphysicalError("walls", "the normal must be a unit vector");
+    for (int k = 0; k < 3; ++k)
+      if (state.box.periodic[at(k)] && wall.normal[k] != 0)
+        throw UnphysicalError("walls", "a wall must be parallel to the periodic directions of the box");
   }
 }
 

@@ -89,6 +89,17 @@ TEST(PhysicalChecks, RefuseImpossibleParameters) {
   EXPECT_THROW(compile(model, 0.5), UnphysicalError);
 }
 
+TEST(PhysicalChecks, RefuseWallsThatDoNotFitTheBox) {
+  DemState s = chute_like();
+  const ContactLaws laws = compile(by_collision(0.005, 0.88), 0.5);
+  s.box = {{0, 0, 0}, {10, 10, 10}, {true, true, false}};
+  prepare(s, laws);
+  s.walls[0].normal = {0.6, 0, 0.8};  // x repeats, the plane does not
+  EXPECT_THROW(prepare(s, laws), UnphysicalError);
+  s.walls[0].normal = {0, 0, 2};
+  EXPECT_THROW(prepare(s, laws), UnphysicalError);
+}
+
 TEST(NumericalFailure, NamesTheGrainTheStepAndTheCause) {
   const auto laws = testing::paper_laws();
   const auto failure = [&](Vec3 v) {
