@@ -60,7 +60,7 @@ const std::vector<Plan>& profile_plans() {
        "of a "
        "steady flow.",
        "stress",
-       {{"sigma_xx", "xx"}, {"sigma_yy", "yy"}, {"sigma_zz", "zz"}, {"sigma_xz", "xz"}},
+       {{"sigma_xx", "xx"}, {"sigma_yy", "yy"}, {"sigma_zz", "zz"}, {"sigma_xz", "-xz"}},
        false},
       {"friction",
        "Friction: shear stress over normal stress. In a steady flow it is the tangent of the slope (dashed).",
@@ -93,7 +93,10 @@ bool worth_drawing(const Curve& curve) {
 
 // z upwards, the quantity across.
 Curve over_depth(const io::CsvTable& profile, const std::string& column, std::string label) {
-  return {.label = std::move(label), .x = profile[column], .y = profile["z"]};
+  Curve curve{.label = std::move(label), .x = profile[column], .y = profile["z"]};
+  if (column == "sigma_xz")  // negative in a flow along x: drawn with the others as its opposite
+    for (double& v : curve.x) v = -v;
+  return curve;
 }
 
 // u = (5/3) u_bar (1 - ((h - z)/h)^(3/2)) with z from the base (Weinhart et al. 2012, section 7).
@@ -144,7 +147,7 @@ void add_series(std::vector<Figure>& all, std::span<const RunData> runs) {
   const bool several = runs.size() > 1;
   const std::size_t before = all.size();
   const auto figure_of = [&](const Plan& plan) {
-    Figure figure{plan.name, plan.caption, "t", plan.label, plan.log, {}};
+    Figure figure{plan.name, plan.caption, "t", plan.label, false, plan.log, {}};
     for (const auto& run : runs) {
       if (!run.series || run.series->names.empty()) continue;
       for (const auto& [column, label] : plan.columns)
@@ -171,7 +174,7 @@ void add_series(std::vector<Figure>& all, std::span<const RunData> runs) {
 void add_profiles(std::vector<Figure>& all, std::span<const RunData> runs) {
   const bool several = runs.size() > 1;
   for (const auto& plan : profile_plans()) {
-    Figure figure{plan.name, plan.caption, plan.label, "z", false, {}};
+    Figure figure{plan.name, plan.caption, plan.label, "z", false, false, {}};
     for (const auto& run : runs) {
       if (!run.profile || !run.profile->has("z")) continue;
       for (const auto& [column, label] : plan.columns)
@@ -188,6 +191,43 @@ void add_profiles(std::vector<Figure>& all, std::span<const RunData> runs) {
   }
 }
 
+void add_widths(std::vector<Figure>& all, std::span<const RunData> runs) {
+  Figure figure{"widths",
+                "Solid fraction for several widths of the kernel, in grain diameters: narrow ones show the layers of "
+                "grains, wide "
+                "ones smear base and surface (Weinhart et al. 2012, figure 6).",
+                "solid fraction",
+                "z",
+                false,
+                false,
+                {}};
+  for (const auto& run : runs) {
+    if (!run.widths || !run.widths->has("z")) continue;
+    for (const auto& column : run.widths->names)
+      if (column.starts_with("phi_w"))
+        figure.curves.push_back(
+            over_depth(*run.widths, column, legend(run, "w = " + column.substr(5), runs.size() > 1)));
+  }
+  keep(all, std::move(figure));
+}
+
+void add_steadiness(std::vector<Figure>& all, std::span<const RunData> runs) {
+  Figure figure{
+      "steadiness",
+      "Rate of change of momentum left in the average over a time T, over the weight. In a steady flow it falls like "
+      "1/T (Weinhart et al. 2012, figure 5).",
+      "T",
+      "residual",
+      true,
+      true,
+      {}};
+  for (const auto& run : runs)
+    if (run.steadiness)
+      figure.curves.push_back(
+          {legend(run, "", runs.size() > 1), (*run.steadiness)["duration"], (*run.steadiness)["residual"]});
+  keep(all, std::move(figure));
+}
+
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
@@ -199,6 +239,8 @@ std::string quoted(const std::string& text) {
 std::vector<Figure> figures(std::span<const RunData> runs) {
   std::vector<Figure> all;
   add_profiles(all, runs);
+  add_widths(all, runs);
+  add_steadiness(all, runs);
   add_series(all, runs);
   return all;
 }
@@ -210,6 +252,7 @@ void draw(const Figure& figure, const std::filesystem::path& file) {
       "set linetype 4 lc rgb '#8a5fbf'\nset linetype 5 lc rgb '#e08e1b'\nset linetype 6 lc rgb '#444444'\n"
       "set key outside top center horizontal\n";
   script += fmt::format("set xlabel {}\nset ylabel {}\n", quoted(figure.x_label), quoted(figure.y_label));
+  if (figure.log_x) script += "set logscale x\n";
   if (figure.log_y) script += "set logscale y\nset format y '10^{%T}'\n";
   std::vector<io::PlotData> data;
   std::string plots;

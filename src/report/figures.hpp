@@ -21,12 +21,12 @@ struct Figure {
   std::string name;     // of the file
   std::string caption;  // a sentence: what is seen, and what it should look like
   std::string x_label, y_label;
-  bool log_y = false;
+  bool log_x = false, log_y = false;
   std::vector<Curve> curves;
 };
 
 // Every figure that the files of the runs allow, each with all runs in it: energies and energy ratio in time, depth
-// profiles of velocity (with Bagnold's), solid fraction, stresses (with the weight above), friction and temperature. A
+// profiles of velocity (with Bagnold's), solid fraction, stresses (with the weight above), friction and temperature, solid fraction for several kernel widths, momentum residual against averaging time. A
 // series that holds none of the known columns is drawn column by column.
 std::vector<Figure> figures(std::span<const RunData> runs);
 

@@ -22,9 +22,14 @@ RunData read_run(const std::filesystem::path& directory) {
     throw IoError(fmt::format("{}: error: {}", summary.string(), error.what()));
   }
   run.input = io::read_file(directory / "case.toml");
-  if (const auto file = directory / "series.csv"; std::filesystem::exists(file)) run.series = io::read_csv(file);
-  if (const auto file = directory / "profile.csv"; std::filesystem::exists(file))
-    run.profile = io::read_csv(file, io::CsvHeader::names_and_units);
+  const auto table = [&](const char* name, io::CsvHeader header) -> std::optional<io::CsvTable> {
+    if (!std::filesystem::exists(directory / name)) return std::nullopt;
+    return io::read_csv(directory / name, header);
+  };
+  run.series = table("series.csv", io::CsvHeader::names);
+  run.profile = table("profile.csv", io::CsvHeader::names_and_units);
+  run.widths = table("widths.csv", io::CsvHeader::names_and_units);
+  run.steadiness = table("steadiness.csv", io::CsvHeader::names_and_units);
   return run;
 }
 

@@ -14,9 +14,11 @@ struct RunData {
   nlohmann::ordered_json summary;
   std::string input;  // case.toml
   std::optional<io::CsvTable> series, profile;
+  std::optional<io::CsvTable> widths;      // solid fraction for several widths of the kernel
+  std::optional<io::CsvTable> steadiness;  // momentum residual against averaging time
 };
 
-// Reads summary.json, case.toml and, where they exist, series.csv and profile.csv. Throws InputError when
+// Reads summary.json, case.toml and the tables that exist. Throws InputError when
 // `directory` holds no finished or interrupted run, IoError when a file cannot be read.
 RunData read_run(const std::filesystem::path& directory);
 

@@ -102,6 +102,21 @@ TEST_F(Report, AnUnknownSeriesIsDrawnColumnByColumn) {
   EXPECT_EQ(all[0].curves[0].y, (std::vector<double>{5, 6}));
 }
 
+TEST_F(Report, WidthsAndSteadinessAreDrawnWhenTheyWereMeasured) {
+  const std::vector<RunData> without{read_run(root / "steady")};
+  EXPECT_EQ(find(figures(without), "widths"), nullptr);
+  io::write_csv(root / "steady" / "widths.csv", {{"z", "", ""}, {"phi_w0.05", "", ""}, {"phi_w1", "", ""}},
+                {{0, 1}, {0.5, 0.6}, {0.55, 0.55}}, io::CsvHeader::names_and_units);
+  io::write_csv(root / "steady" / "steadiness.csv", {{"duration", "", ""}, {"residual", "", ""}},
+                {{1, 10}, {0.1, 0.01}}, io::CsvHeader::names_and_units);
+  const std::vector<RunData> with{read_run(root / "steady")};
+  const auto all = figures(with);
+  ASSERT_NE(find(all, "widths"), nullptr);
+  EXPECT_EQ(find(all, "widths")->curves[1].label, "w = 1");
+  ASSERT_NE(find(all, "steadiness"), nullptr);
+  EXPECT_TRUE(find(all, "steadiness")->log_x && find(all, "steadiness")->log_y);
+}
+
 TEST_F(Report, IsOneFileWithEverythingInIt) {
   if (!io::have_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   fs::copy(root / "steady", root / "other", fs::copy_options::recursive);
