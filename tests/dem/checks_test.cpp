@@ -53,6 +53,31 @@ TEST(ContactTypes, PerReducedMassDampingIsTwiceThePaperConstant) {
   EXPECT_DOUBLE_EQ(types[1].gamma_n, 50);  // m_ij = 1 against the base
 }
 
+TEST(Species, EachPairActsWithItsOwnConstants) {
+  ContactModel model = by_collision(0.005, 0.88);
+  for (std::int32_t a = 0; a < 3; ++a)
+    for (std::int32_t b = a; b < 3; ++b)
+      set_pair(model, a, b, {testing::linear(1000 * (1 + a + 3 * b), 0), laws::LinearHistory{}, laws::NoRollingResistance{}});
+  const ContactLaws laws = compile(model, 0.5);
+  const auto force = [&](std::int32_t a, std::int32_t b) {  // b == 2: the wall
+    DemState s;
+    s.dt = 1e-4;
+    add_grain(s, {0, 0, 0.99}, {}, {}, 1, 1, a);
+    if (b < 2)
+      add_grain(s, {0, 0, 0}, {}, {}, 1, 1, b);
+    else
+      s.walls = {{{0, 0, 0.5}, {0, 0, 1}, 2}};
+    prepare(s, laws);
+    return s.grains.force[0].z;
+  };
+  EXPECT_NEAR(force(0, 0), 10, 1e-11);
+  EXPECT_NEAR(force(0, 1), 40, 1e-11);
+  EXPECT_NEAR(force(1, 0), 40, 1e-11);
+  EXPECT_NEAR(force(1, 1), 50, 1e-11);
+  EXPECT_NEAR(force(0, 2), 70, 1e-11);
+  EXPECT_NEAR(force(1, 2), 80, 1e-11);
+}
+
 TEST(PhysicalChecks, JudgeTheStepAgainstTheCollisionTime) {
   DemState s = chute_like();
   const auto model = by_collision(0.005, 0.88);

@@ -139,6 +139,38 @@ TEST(EveryLaw, NeverGainsEnergyInACollision) {
     });
 }
 
+// Shear lightly pressed, press, shear back, let go, in both orders: a spring that follows the load must not do net work.
+TEST(EveryLaw, GivesNoTangentialWorkInALoadingCycle) {
+  for_every_choice(false, [](const std::string& name, const ContactLaws& laws) {
+    with_laws(laws, [&](const auto& tables) {
+      const auto law = tables.of(0, 0);
+      const Size size = laws::sizes(2, 2, 1, 1);
+      for (const bool reversed : {false, true}) {
+        double overlap = 1e-3, work = 0, taken = 0;
+        History history{};
+        const auto move = [&](double press, double shear) {
+          constexpr int steps = 2000;
+          for (int n = 0; n < steps; ++n) {
+            overlap += press / steps;
+            const Motion motion{{0, 0, 1 - overlap}, {shear, 0, -press}, {0, 0, 0}, {0, 0, 0}, 1, 0, 0};
+            const Force f = laws::interact<true>(law, laws::pair_geometry(motion), size, 1.0 / steps, history);
+            const double power = f.force.x * shear;
+            work += power / steps;
+            taken -= std::min(0.0, power) / steps;
+          }
+        };
+        if (reversed) move(4e-3, 0);
+        move(0, 1e-4);
+        move(reversed ? -4e-3 : 4e-3, 0);
+        move(0, -1e-4);
+        if (!reversed) move(-4e-3, 0);
+        EXPECT_GT(taken, 0) << name;
+        EXPECT_LT(work, 2e-3 * taken) << name << (reversed ? ", unloaded while sheared" : ", loaded while sheared");
+      }
+    });
+  });
+}
+
 TEST(EveryLaw, KeepsItsHistoryOnlyWhileItTouches) {
   for_every_choice(true, [](const std::string& name, const ContactLaws& laws) {
     DemState s = about_to_meet(3, 1, 1);
