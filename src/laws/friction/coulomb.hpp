@@ -1,0 +1,33 @@
+// Constant basal friction: mu = tan(delta).
+#pragma once
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <tuple>
+
+#include "core/fields.hpp"
+
+namespace bagnold::laws {
+
+inline double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180); }
+
+struct Coulomb {
+  static constexpr std::string_view name = "coulomb";
+  static constexpr std::string_view summary = "constant basal friction: mu = tan(delta)";
+  static constexpr std::string_view source = "Weinhart et al. 2012, section 4.2 (limit delta1 = delta2 of eq. 37)";
+  double delta_deg = 20;
+
+  static constexpr auto fields() {
+    return std::tuple{field("delta_deg", "deg", "basal friction angle", &Coulomb::delta_deg, Range{.lo = 0, .hi = 90, .hi_open = true})};
+  }
+
+  // The law with its tangents taken, for loops. h: thickness (any unit of length), F = |u|/sqrt(g h cos theta).
+  struct Prepared {
+    double tan_delta;
+    double mu(double /*h*/, double /*F*/) const { return tan_delta; }
+    double dmu_dF(double /*h*/, double /*F*/) const { return 0; }
+  };
+  Prepared prepared(double /*g*/) const { return {tan_deg(delta_deg)}; }
+};
+
+}  // namespace bagnold::laws
