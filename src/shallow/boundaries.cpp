@@ -21,13 +21,7 @@ void fill_side(const Solver& s, const Boundary& boundary, bool normal_x, double 
     h = interpolate(boundary.inflow.t, boundary.inflow.h, time);
     speed = interpolate(boundary.inflow.t, boundary.inflow.u, time) * sign;
   }
-  // rho(h, u) h of the inflow, by the exact closures
-  double D = 0;
-  if (h > 0) {
-    D = s.closure.rho * h;
-    if (!s.closure.set.is_constant())
-      for (int k = 0; k < 60; ++k) D = closure_of_cell(s.closure, D, std::abs(speed)).rho * h;
-  }
+  const double D = h > 0 ? closure_at(s.closure, h, std::abs(speed)).rho * h : 0;
   for (const Ghost& g : ghosts) switch (boundary.kind) {
       case BoundaryKind::wall:
         u.D[g.to] = u.D[g.mirror];

@@ -72,28 +72,28 @@ PreparedClosure prepare(const Definition& setup) {
   return p;
 }
 
+CellClosure closure_at(const PreparedClosure& p, double h, double speed) {
+  const double froude = h > 0 ? speed / std::sqrt(p.normal * h) : 0;
+  const double mu = std::visit([&](const auto& law) { return law.prepared(p.g).mu(h, froude); }, p.set.friction);
+  const double theta = clamped(degrees(mu), p.set.validity);
+  CellClosure c{h, mu, 0, 0, 0, 0};
+  c.rho = p.set.grain_density * std::visit([&](const auto& l) { return l.volume_fraction(theta); }, p.set.density);
+  c.K = std::visit([&](const auto& l) { return l.ratio(theta); }, p.set.stress_ratio);
+  const double alpha = std::visit([&](const auto& l) { return l.factor(h, laws::tan_deg(theta)); }, p.set.shape_factor);
+  const double x = std::min(1.0, h * p.inverse_tip_depth);
+  c.slope = (alpha - 1) * 6 * x * x * (1 - x);
+  c.alpha = 1 + (alpha - 1) * x * x * (3 - 2 * x);
+  return c;
+}
+
 CellClosure closure_of_cell(const PreparedClosure& p, double D, double speed) {
   if (!(D > p.dry_density_depth)) return {0, 0, p.rho, p.K, 1, 0};
-  const auto at = [&](double h) {
-    const double mu = std::visit(
-        [&](const auto& law) { return law.prepared(p.g).mu(h, speed / std::sqrt(p.normal * h)); }, p.set.friction);
-    const double theta = clamped(degrees(mu), p.set.validity);
-    CellClosure c{h, mu, 0, 0, 0, 0};
-    c.rho = p.set.grain_density * std::visit([&](const auto& l) { return l.volume_fraction(theta); }, p.set.density);
-    c.K = std::visit([&](const auto& l) { return l.ratio(theta); }, p.set.stress_ratio);
-    c.alpha = std::visit([&](const auto& l) { return l.factor(h, std::tan(theta * std::numbers::pi / 180)); }, p.set.shape_factor);
-    return c;
-  };
   double lo = D / p.set.grain_density, hi = 100 * lo;  // bisection: rho(h) h grows with h
-  for (int k = 0; k < 200; ++k) {
+  for (int k = 0; k < 100; ++k) {
     const double middle = 0.5 * (lo + hi);
-    (at(middle).rho * middle < D ? lo : hi) = middle;
+    (closure_at(p, middle, speed).rho * middle < D ? lo : hi) = middle;
   }
-  CellClosure c = at(0.5 * (lo + hi));
-  const double x = std::min(1.0, c.h * p.inverse_tip_depth);
-  c.slope = (c.alpha - 1) * 6 * x * x * (1 - x);
-  c.alpha = 1 + (c.alpha - 1) * x * x * (3 - 2 * x);
-  return c;
+  return closure_at(p, 0.5 * (lo + hi), speed);
 }
 
 double basal_friction(const closure::ClosureSet& set, double g, double h, double froude) {

@@ -42,7 +42,8 @@ PreparedClosure prepare(const Definition& setup);
 struct CellClosure {
   double h, mu, rho, K, alpha, slope;
 };
-CellClosure closure_of_cell(const PreparedClosure& p, double D, double speed);
+CellClosure closure_at(const PreparedClosure& p, double h, double speed);      // h given
+CellClosure closure_of_cell(const PreparedClosure& p, double D, double speed);  // rho(h, u) h = D given
 // Friction with static branch of the chosen law.
 double basal_friction(const closure::ClosureSet& set, double g, double h, double froude);
 double starting_friction(const closure::ClosureSet& set, double g, double h);

@@ -15,12 +15,9 @@ void set_cell(const Solver& s, State& state, int i, int j, double h, double u, d
     normal *= s.cosine[c];
     w = u * s.bed_x[c] + v * s.bed_y[c];
   }
-  double D = s.closure.rho * h;
-  if (!s.closure.set.is_constant() && h > 0) {
-    PreparedClosure local = s.closure;
-    local.normal = normal;
-    for (int k = 0; k < 60; ++k) D = closure_of_cell(local, D, std::sqrt(u * u + v * v + w * w)).rho * h;
-  }
+  PreparedClosure local = s.closure;
+  local.normal = normal;
+  const double D = closure_at(local, h, std::sqrt(u * u + v * v + w * w)).rho * h;
   state.now.D[c] = D;
   state.now.Mx[c] = D * u;
   state.now.My[c] = D * v;

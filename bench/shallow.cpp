@@ -1,0 +1,51 @@
+// Cell updates per second and core of the shallow-layer solver: one full second-order time step of one wet cell.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.hpp"
+#include "shallow/solver.hpp"
+
+namespace {
+using namespace bagnold;
+using namespace bagnold::shallow;
+
+Definition field(int n, bool measured) {
+  Definition s;
+  s.grid = {.nx = n, .ny = n, .dx = 5, .dy = 5};
+  const double theta = 26 * std::numbers::pi / 180;
+  s.gravity = {.normal = std::cos(theta), .slope_x = std::tan(theta), .slope_y = 0.1, .g = 1};
+  if (measured) {
+    s.closure = *closure::builtin("weinhart2012/1", 1, 6 / std::numbers::pi);
+  } else {
+    s.closure.friction = laws::PouliquenForterre{};
+    s.closure.shape_factor = laws::ConstantShapeFactor{1.2};
+  }
+  s.scheme.tip_depth = 3;
+  for (Boundary& b : s.boundary) b.kind = BoundaryKind::periodic;
+  return s;
+}
+
+void cell_updates(benchmark::State& bench, bool measured, double wet_part) {
+  set_threads(1);
+  const int n = static_cast<int>(bench.range(0));
+  Solver solver = make_solver(field(n, measured));
+  State state = empty_state(solver);
+  for (int j = 0; j < n * wet_part; ++j)
+    for (int i = 0; i < n; ++i) set_cell(solver, state, i, j, 10 + std::sin(0.05 * i) * std::cos(0.07 * j), 1, 0.2);
+  refresh(solver, state);
+  for (int k = 0; k < 3; ++k) advance_one_step(solver, state);
+  const double before = state.cell_updates;
+  for (auto _ : bench) advance_one_step(solver, state);
+  bench.counters["wet_cell_updates/s"] = benchmark::Counter(state.cell_updates - before, benchmark::Counter::kIsRate);
+}
+void constant_closures(benchmark::State& s) { cell_updates(s, false, 1); }
+void all_closures(benchmark::State& s) { cell_updates(s, true, 1); }
+void constant_closures_one_tenth_wet(benchmark::State& s) { cell_updates(s, false, 0.1); }
+
+BENCHMARK(constant_closures)->Arg(240)->Arg(960)->Unit(benchmark::kMillisecond);
+BENCHMARK(all_closures)->Arg(240)->Unit(benchmark::kMillisecond);
+BENCHMARK(constant_closures_one_tenth_wet)->Arg(960)->Unit(benchmark::kMillisecond);
+
+}  // namespace
