@@ -111,7 +111,7 @@ void face_row(const FaceArgs& a, FaceRow& out) {
   const double *s_B = a.along_y ? B.bx : B.by, *s_A = (a.along_y ? A.bx : A.by) + o;
   const double g = a.normal_g, inv_d = a.inv_d;
   constexpr double round_off = 1e-15;
-#pragma GCC ivdep
+#pragma omp simd
   for (int f = a.begin; f < a.end; ++f) {
     const double K = 0.5 * (B.K[f] + KA[f]);
     double gK = g * K, cf = 1, metric_f = 1, metric_b = 1, metric_a = 1, hold_scale = 1;
@@ -147,7 +147,8 @@ void face_row(const FaceArgs& a, FaceRow& out) {
     const double wet_b = B.h[f] > 0 ? 1 : 0, wet_a = hA[f] > 0 ? 1 : 0, wet = wet_b + wet_a;
     const double slack = round_off * ((std::abs(B.b[f]) + std::abs(bA[f])) + K * (B.h[f] + hA[f]));
     const double normal = larger(0, std::abs(out.drop[f]) - slack) * inv_d;
-    const double tangent = wet > 0 ? (wet_b * tangent_B[f] + wet_a * tangent_A[f]) / wet : 0;
+    const double share = wet > 1 ? 0.5 : 1;
+    const double tangent = share * (wet_b * tangent_B[f] + wet_a * tangent_A[f]);
     double steepness = normal * normal + tangent * tangent;
     if constexpr (G == Geometry::terrain) {
       const double nf = 0.5 * (n_B[f] + n_A[f]), sf = 0.5 * (s_B[f] + s_A[f]), signed_drop = out.drop[f] * inv_d;

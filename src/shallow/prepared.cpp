@@ -46,6 +46,7 @@ PreparedClosure prepare(const Definition& setup) {
   PreparedClosure p;
   p.set = setup.closure;
   p.g = setup.gravity.g;
+  p.friction = std::visit([&](const auto& law) -> AnyFriction { return laws::BasalFriction(law.prepared(p.g), p.set.static_branch); }, p.set.friction);
   p.normal = setup.gravity.normal;
   const closure::Validity& v = p.set.validity;
   const double lo = std::tan(v.theta_lo_deg * std::numbers::pi / 180), hi = std::tan(v.theta_hi_deg * std::numbers::pi / 180);
@@ -54,6 +55,8 @@ PreparedClosure prepare(const Definition& setup) {
   };
   const auto ratio = [&](double mu) { return std::visit([&](const auto& l) { return l.ratio(degrees(mu)); }, p.set.stress_ratio); };
   if (!p.set.is_constant()) {
+    p.mu_lo = lo;
+    p.mu_hi = hi;
     p.rho_of_mu = Polynomial::fit(lo, hi, density);
     p.K_of_mu = Polynomial::fit(lo, hi, ratio);
   }

@@ -1,9 +1,11 @@
 // Closures made ready for loops: tangents taken, functions of the friction angle replaced by polynomials in mu.
 #pragma once
 #include <array>
+#include <cmath>
 #include <functional>
 
 #include "closure/closure_set.hpp"
+#include "core/unrolled.hpp"
 #include "shallow/definition.hpp"
 
 namespace bagnold::shallow {
@@ -16,25 +18,40 @@ struct Polynomial {
   static Polynomial fit(double lo, double hi, const std::function<double(double)>& f);
   double operator()(double x) const {
     double s = (x - middle) * inverse_half_width;
-    s = s < -1 ? -1 : s;
-    s = s > 1 ? 1 : s;
+    s = 0.5 * (std::abs(s + 1) - std::abs(s - 1));  // clamped to [-1, 1] without a branch
     double y = coefficient[degree];
-    for (int k = degree - 1; k >= 0; --k) y = y * s + coefficient[static_cast<std::size_t>(k)];
+    unrolled<degree>([&](int k) { y = y * s + coefficient[static_cast<std::size_t>(degree - 1 - k)]; });
     return y;
   }
 };
 
+// Friction laws with their static branch, tangents taken.
+template <class R>
+struct PreparedLaws;
+template <class... Laws>
+struct PreparedLaws<Registry<Laws...>> {
+  using Any = std::variant<laws::BasalFriction<typename Laws::Prepared>...>;
+};
+using AnyFriction = PreparedLaws<laws::FrictionLaws>::Any;
+
 struct PreparedClosure {
   closure::ClosureSet set;
+  AnyFriction friction = laws::BasalFriction(laws::Coulomb{}.prepared(1), laws::StaticBranch{});
   double g = 1, normal = 1;                 // full and normal gravity
   double dry_density_depth = 0;             // D below which a cell is dry
   double inverse_tip_depth = 1e300;
   double rho = 1, K = 1, alpha = 1;         // constant closures; else representative values
   Polynomial rho_of_mu, K_of_mu;            // functions of mu within the validity range
+  double mu_lo = 0, mu_hi = 1e300;          // its ends
   bool alpha_varies = false;
   laws::StrainModelShapeFactor strain;
   double strain_mu1 = 0, strain_mu2 = 0;
 };
+
+template <class Law>
+const laws::BasalFriction<typename Law::Prepared>& prepared_law(const PreparedClosure& p) {
+  return std::get<laws::BasalFriction<typename Law::Prepared>>(p.friction);
+}
 
 PreparedClosure prepare(const Definition& setup);
 

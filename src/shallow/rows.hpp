@@ -38,15 +38,15 @@ enum class Geometry { flat, bed, terrain };
 // ---- closure_rows.cpp --------------------------------------------------------------------------------------------
 // D, M of `n` cells -> h, u, v and closures. `row.c, bx, by` are set (terrain).
 using ClosureKernel = void (*)(const PreparedClosure&, int n, const double* D, const double* Mx, const double* My, CellRow&);
-// One friction solve per cell, see friction_row().
+// One friction solve per cell, see friction_stage().
 struct FrictionArgs {
   int n, stage;
   double dt;
-  const double *h, *u, *v, *rho;                          // where friction is linearised: the state the stage began with
+  const double *h, *u, *v, *hold;                         // the state the stage began with
   const double *c, *bx, *by, *bend;                       // terrain: geometry and curvature acceleration
   const double *D_new, *Msx, *Msy;                        // after fluxes and gravity
-  const double *D_old, *Mx_old, *My_old;                  // start of the step (stage 2)
-  double *friction;                                       // N mu at the start of the step: out in stage 1, in in stage 2
+  const double *Mx_old, *My_old;                          // start of the step
+  double *share;                                          // of the old momentum: out in stage 1, in in stage 2
   double *Mx, *My;                                        // result
 };
 using FrictionKernel = void (*)(const PreparedClosure&, const FrictionArgs&);

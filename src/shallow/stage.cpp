@@ -233,10 +233,10 @@ void Sweep<G>::apply_friction(int j) {
   const std::size_t at = g_.at(t_.i0, j);
   Conserved& to = number_ == 1 ? s_.predicted : s_.next;
   const FrictionArgs args{.n = t_.nx, .stage = number_, .dt = dt_, .h = row.h + halo, .u = row.u + halo, .v = row.v + halo,
-                          .rho = row.rho + halo, .c = row.c + halo, .bx = row.bx + halo, .by = row.by + halo,
+                          .hold = row.hold + halo, .c = row.c + halo, .bx = row.bx + halo, .by = row.by + halo,
                           .bend = w_.bend + halo, .D_new = w_.D_new + halo, .Msx = w_.Msx + halo, .Msy = w_.Msy + halo,
-                          .D_old = &start_.D[at], .Mx_old = &start_.Mx[at], .My_old = &start_.My[at],
-                          .friction = &s_.next.D[at], .Mx = &to.Mx[at], .My = &to.My[at]};
+                          .Mx_old = &start_.Mx[at], .My_old = &start_.My[at],
+                          .share = &s_.next.D[at], .Mx = &to.Mx[at], .My = &to.My[at]};
   s_.kernels.friction(s_.closure, args);
   std::copy_n(w_.D_new + halo, t_.nx, &to.D[at]);
 }

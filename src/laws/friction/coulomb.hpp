@@ -9,6 +9,11 @@
 
 namespace bagnold::laws {
 
+// Friction and its derivative with respect to the Froude number.
+struct MuAndSlope {
+  double mu, slope;
+};
+
 inline double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180); }
 
 struct Coulomb {
@@ -25,7 +30,7 @@ struct Coulomb {
   struct Prepared {
     double tan_delta;
     double mu(double /*h*/, double /*F*/) const { return tan_delta; }
-    double dmu_dF(double /*h*/, double /*F*/) const { return 0; }
+    MuAndSlope mu_and_slope(double /*h*/, double /*F*/) const { return {tan_delta, 0}; }
   };
   Prepared prepared(double /*g*/) const { return {tan_deg(delta_deg)}; }
 };

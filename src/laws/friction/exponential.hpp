@@ -26,9 +26,9 @@ struct ExponentialFriction {
     double mu1, delta_mu, a_per_h, gamma;
     double excess(double F) const { const double y = F + gamma; return y > 1e-12 ? y : 1e-12; }
     double mu(double h, double F) const { return mu1 + delta_mu * std::exp(-a_per_h * h / excess(F)); }
-    double dmu_dF(double h, double F) const {
-      const double y = excess(F), a = a_per_h * h;
-      return delta_mu * std::exp(-a / y) * a / (y * y);
+    MuAndSlope mu_and_slope(double h, double F) const {
+      const double y = excess(F), a = a_per_h * h, part = delta_mu * std::exp(-a / y);
+      return {mu1 + part, part * a / (y * y)};
     }
   };
   Prepared prepared(double /*g*/) const {

@@ -1,5 +1,6 @@
 // Friction from Jenkins' flow rule F = beta (h/h_stop) tan^2(theta)/tan^2(delta1) - gamma (eq. 40).
 #pragma once
+#include "core/unrolled.hpp"
 #include "laws/friction/coulomb.hpp"
 
 namespace bagnold::laws {
@@ -25,18 +26,17 @@ struct Jenkins {
   // from mu2 falls monotonically on the root; eight steps reach round-off for any a, y.
   struct Prepared {
     double mu1, mu2, a_per_h, gamma;
-    double excess(double F) const { const double y = F + gamma; return y > 0 ? y : 0; }
+    double excess(double F) const { const double y = F + gamma; return 0.5 * (y + std::abs(y)); }  // max(y, 0)
     static constexpr int newton_steps = 8;
     double mu(double h, double F) const {
       const double a = a_per_h * h + 1e-300, b = excess(F) * mu1 * mu1;
       double m = mu2;
-      for (int k = 0; k < newton_steps; ++k)
-        m -= (a * (m - mu1) * m * m - b * (mu2 - m)) / (a * m * (3 * m - 2 * mu1) + b);
+      unrolled<newton_steps>([&](int) { m -= (a * (m - mu1) * m * m - b * (mu2 - m)) / (a * m * (3 * m - 2 * mu1) + b); });
       return m;
     }
-    double dmu_dF(double h, double F) const {
+    MuAndSlope mu_and_slope(double h, double F) const {
       const double a = a_per_h * h + 1e-300, b = excess(F) * mu1 * mu1, m = mu(h, F);
-      return mu1 * mu1 * (mu2 - m) / (a * m * (3 * m - 2 * mu1) + b);
+      return {m, mu1 * mu1 * (mu2 - m) / (a * m * (3 * m - 2 * mu1) + b)};
     }
   };
   Prepared prepared(double /*g*/) const {

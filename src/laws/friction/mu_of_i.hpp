@@ -21,10 +21,10 @@ struct MuOfI {
 
   struct Prepared {
     double mu_s, delta_mu, h_scale;  // I0/I = h/(h_scale F)
-    double mu(double h, double F) const { const double y = h_scale * F; return mu_s + delta_mu * (y / (y + h + 1e-300)); }
-    double dmu_dF(double h, double F) const {
-      const double s = h_scale * F + h + 1e-150;
-      return delta_mu * h_scale * (h / (s * s));
+    double mu(double h, double F) const { return mu_and_slope(h, F).mu; }
+    MuAndSlope mu_and_slope(double h, double F) const {
+      const double y = h_scale * F, q = 1 / (y + h + 1e-150);
+      return {mu_s + delta_mu * (y * q), delta_mu * h_scale * (h * q) * q};
     }
   };
   Prepared prepared(double /*g*/) const { return {mu_s, mu_2 - mu_s, 2.5 * d / (I0 * std::sqrt(phi))}; }

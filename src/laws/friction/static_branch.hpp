@@ -29,21 +29,22 @@ struct StaticBranch {
 template <class Dynamic>
 struct BasalFriction {
   Dynamic dynamic;
-  double froude_star, mu3, delta_mu, length;
+  double froude_star, inverse_froude_star, mu3, delta_mu, length;
   BasalFriction(const Dynamic& law, const StaticBranch& s)
-      : dynamic(law), froude_star(s.froude_star), mu3(tan_deg(s.delta3_deg)),
+      : dynamic(law), froude_star(s.froude_star), inverse_froude_star(s.froude_star > 0 ? 1 / s.froude_star : 0), mu3(tan_deg(s.delta3_deg)),
         delta_mu(tan_deg(s.delta2_deg) - tan_deg(s.delta1_deg)), length(s.length) {}
 
   double mu_start(double h) const {
     return froude_star > 0 ? mu3 + delta_mu * (length / (length + h)) : dynamic.mu(h, 0);
   }
-  double mu(double h, double F) const {
+  double mu(double h, double F) const { return mu_and_slope(h, F, mu_start(h)).mu; }
+  // The slope is that of the dynamic law only: on the weakening branch friction is taken as it is, not linearised.
+  MuAndSlope mu_and_slope(double h, double F, double start) const {  // start = mu_start(h)
     const bool flowing = F >= froude_star;
-    const double at = flowing ? F : froude_star, m = dynamic.mu(h, at), start = mu_start(h);
-    return flowing ? m : (F / froude_star) * (m - start) + start;
+    const MuAndSlope m = dynamic.mu_and_slope(h, flowing ? F : froude_star);
+    const double part = flowing ? 1 : F * inverse_froude_star;
+    return {part * (m.mu - start) + start, flowing ? m.slope : 0};
   }
-  // Of the dynamic law only: on the weakening branch friction is taken as it is, not linearised.
-  double dmu_dF(double h, double F) const { return F >= froude_star ? dynamic.dmu_dF(h, F) : 0; }
 };
 
 }  // namespace bagnold::laws

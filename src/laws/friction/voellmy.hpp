@@ -19,7 +19,7 @@ struct Voellmy {
   struct Prepared {
     double mu0, g_per_xi;
     double mu(double /*h*/, double F) const { return mu0 + g_per_xi * F * F; }
-    double dmu_dF(double /*h*/, double F) const { return 2 * g_per_xi * F; }
+    MuAndSlope mu_and_slope(double h, double F) const { return {mu(h, F), 2 * g_per_xi * F}; }
   };
   Prepared prepared(double g) const { return {mu0, g / xi}; }
 };

@@ -1,0 +1,12 @@
+// A short loop written out at compile time, so that the loop around it vectorises.
+#pragma once
+#include <utility>
+
+namespace bagnold {
+
+template <int n, class F>
+inline void unrolled(F&& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) { (f(k), ...); }(std::make_integer_sequence<int, n>{});
+}
+
+}  // namespace bagnold
