@@ -62,14 +62,13 @@ class Model {
                                                                      int number) = 0;
   // Files written once at the end (profile.csv, rasters, ...).
   virtual void write_results(const std::filesystem::path& directory) = 0;
-  virtual void add_summary(nlohmann::json& summary) = 0;
+  // Adds what the contract wants of this model; `wall_s` is what this process spent, for speeds.
+  virtual void add_summary(nlohmann::ordered_json& summary, double wall_s) = 0;
   virtual std::vector<Derived> derived() = 0;
 };
 
 // Reads the part of the case that belongs to the model named in it, checks it, builds the initial state.
 std::unique_ptr<Model> make_model(config::Case& input);
 std::unique_ptr<Model> make_dem(config::Case& input);
-std::unique_ptr<Model> make_sph(config::Case& input);
-std::unique_ptr<Model> make_shallow(config::Case& input);
 
 }  // namespace bagnold::app

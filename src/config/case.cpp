@@ -107,6 +107,7 @@ void Section::fail(std::string_view key, const std::string& what) const {
 }
 
 bool Section::has(std::string_view key) const { return table_of(node_).contains(std::string(key)); }
+void Section::ask(std::string_view key) const { node_->asked.insert(std::string(key)); }
 std::string Section::path() const { return node_->path; }
 
 std::vector<std::string> Section::keys() const {
@@ -233,6 +234,20 @@ Case Case::from_file(const std::string& path, const std::vector<std::string>& ov
 }
 
 Section Case::root() const { return {&impl_->root, &impl_->resolved}; }
+void Case::fail(const std::string& key, const std::string& what) const {
+  const Node* node = &impl_->root;
+  std::size_t begin = 0;
+  while (begin < key.size()) {
+    const std::size_t end = std::min(key.find('.', begin), key.size());
+    const auto& table = table_of(node);
+    const auto at = table.find(key.substr(begin, end - begin));
+    if (at == table.end()) break;
+    node = &at->second;
+    begin = end + 1;
+  }
+  fail_at(node->place, key + ": " + what);
+}
+
 std::string Case::resolved() const { return to_toml(impl_->resolved); }
 const std::string& Case::directory() const { return impl_->directory; }
 

@@ -29,6 +29,7 @@ class Section {
   // Throws InputError `file:line:col: error: <what>` at the place of `key` (or of the table when it is absent).
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
   bool has(std::string_view key) const;      // does not count as asking
+  void ask(std::string_view key) const;      // makes `key` known without reading it
   std::string path() const;                  // "scenario", "contact.grain-base"
 
   Section child(std::string_view key) const;                       // empty section when absent
@@ -45,9 +46,11 @@ class Section {
   // Replaces what the resolved case says of `key` (for example the number behind "auto").
   void resolve(std::string_view key, Value value) const;
 
-  // All fields of a self-described struct.
+  // All fields of a self-described struct. With `inherited`, absent keys keep its values instead of the defaults.
   template <class T>
   T read() const;
+  template <class T>
+  T read(const T& inherited) const;
   // `key` names a law of the registry; its parameters are keys of this same section.
   template <class R>
   typename R::Any read_law(std::string_view key, std::optional<std::string> fallback) const;
@@ -73,6 +76,8 @@ class Case {
   ~Case();
 
   Section root() const;
+  // Throws InputError at the place of a dotted key ("time.step"), or as near to it as the case goes.
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const;
   // Call when everything has been read: throws InputError for the first key nobody asked for.
   void reject_unread() const;
   std::string resolved() const;              // TOML text of every key asked for, defaults included
@@ -109,6 +114,16 @@ T Section::read() const {
   T t{};
   for_each_field<T>([&](const auto& f) {
     t.*(f.member) = read_member(f.name, f.unit, f.range, f.required, t.*(f.member));
+  });
+  return t;
+}
+
+template <class T>
+T Section::read(const T& inherited) const {
+  T t = inherited;
+  for_each_field<T>([&](const auto& f) {
+    if (has(f.name)) t.*(f.member) = read_member(f.name, f.unit, f.range, false, t.*(f.member));
+    else ask(f.name);
   });
   return t;
 }

@@ -12,8 +12,9 @@ struct InputError : std::runtime_error {
 
 // A value outside the range where the numbers mean something, found below the reader, which adds the location (exit 2).
 struct UnphysicalError : InputError {
-  UnphysicalError(std::string key_, const std::string& what) : InputError(key_ + ": " + what), key(std::move(key_)) {}
-  std::string key;  // dotted key it is about, for example "time.step"
+  UnphysicalError(std::string key_, std::string text_) : InputError(key_ + ": " + text_), key(std::move(key_)), text(std::move(text_)) {}
+  std::string key;   // dotted key it is about, for example "time.step"
+  std::string text;  // what is wrong with it
 };
 
 // The computation left the range where it means something (exit 3): says which grain, particle or cell, when and why.

@@ -1,0 +1,214 @@
+#include "app/dem_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "dem/contacts.hpp"
+#include "dem/energy.hpp"
+#include "io/hdf5.hpp"
+#include "io/vtk.hpp"
+
+namespace bagnold::app {
+
+namespace {
+
+Vec3 mean_velocity(const dem::DemState& state) {
+  Vec3 momentum;
+  double mass = 0;
+  for (std::int64_t i = 0; i < state.grains.flowing; ++i) {
+    const double m = state.grains.mass[static_cast<std::size_t>(i)];
+    momentum += m * dem::full_step_velocity(state, i);
+    mass += m;
+  }
+  return momentum / mass;
+}
+
+double centre_height(const dem::DemState& state) {
+  double moment = 0, mass = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.grains.flowing); ++i) {
+    moment += state.grains.mass[i] * state.grains.x[i].z;
+    mass += state.grains.mass[i];
+  }
+  return moment / mass;
+}
+
+struct FullStep {  // velocities at the time of the positions
+  std::vector<Vec3> v, omega;
+  explicit FullStep(const dem::DemState& state) {
+    for (std::int64_t i = 0; i < state.grains.size(); ++i) {
+      v.push_back(dem::full_step_velocity(state, i));
+      omega.push_back(dem::full_step_omega(state, i));
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<io::Column> dem_series_columns() {
+  return {{"t", "time", "time"},
+          {"e_translational", "energy", "kinetic energy of translation"},
+          {"e_rotational", "energy", "kinetic energy of rotation"},
+          {"e_gravity", "energy", "potential energy of gravity"},
+          {"e_normal_spring", "energy", "elastic energy of normal springs"},
+          {"e_tangential_spring", "energy", "elastic energy of tangential springs"},
+          {"e_rolling_spring", "energy", "elastic energy of rolling springs"},
+          {"lost_normal_damping", "energy", "taken by normal dashpots since t = 0 (with output.energy_ledger)"},
+          {"lost_tangential_damping", "energy", "taken by tangential dashpots"},
+          {"lost_sliding", "energy", "taken by Coulomb sliding"},
+          {"lost_rolling", "energy", "taken by rolling dashpots and sliders"},
+          {"lost_opening", "energy", "left in tangential and rolling springs when contacts opened"},
+          {"ledger_residual", "energy", "energy now + lost - energy at t = 0"},
+          {"energy_ratio", "-", "E_kin / E_ela"},
+          {"u_x", "length/time", "mean velocity of the flowing grains along x"},
+          {"z_mean", "length", "height of their centre of mass"},
+          {"contacts_per_grain", "-", "touching pairs, walls and base included, per flowing grain"},
+          {"max_overlap_over_radius", "-", "largest overlap over the smaller radius"}};
+}
+
+std::vector<double> dem_series_row(const DemInput& in, double initial_energy, std::vector<dem::Contact>& contacts) {
+  const dem::Energies e = dem::energies(in.state, in.laws);
+  const dem::Ledger& ledger = in.state.ledger;
+  dem::list_contacts(in.state, in.laws, contacts);
+  const auto kept = [&](double v) { return in.state.keep_ledger ? v : NAN; };
+  return {in.state.time(), e.translational, e.rotational, e.gravity, e.normal_spring, e.tangential_spring, e.rolling_spring,
+          kept(ledger.damped.normal), kept(ledger.damped.tangential), kept(ledger.sliding),
+          kept(ledger.damped.rolling + ledger.roll_sliding), kept(ledger.opened),
+          kept(e.total() + dem::lost(ledger) - initial_energy),
+          e.elastic() > 0 ? e.kinetic() / e.elastic() : NAN, mean_velocity(in.state).x, centre_height(in.state),
+          static_cast<double>(contacts.size()) / static_cast<double>(in.state.grains.flowing), dem::max_overlap_over_radius(in.state)};
+}
+
+void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::DemState& state, const std::vector<dem::Contact>& contacts) {
+  const dem::Grains& g = state.grains;
+  const FullStep full(state);
+  const std::string grains = group + "/grains/", list = group + "/contacts/";
+  file.write(grains + "id", g.id);
+  file.write(grains + "x", g.x);
+  file.write(grains + "v", full.v);
+  file.write(grains + "omega", full.omega);
+  file.write(grains + "force", g.force);
+  file.write(grains + "torque", g.torque);
+  file.write(grains + "diameter", g.diameter);
+  file.write(grains + "mass", g.mass);
+  file.write(grains + "species", g.species);
+  file.attribute(group + "/grains", "flowing", g.flowing);
+
+  std::vector<std::int32_t> i, j;
+  std::vector<Vec3> branch, force, spring;
+  std::vector<double> overlap;
+  for (const dem::Contact& c : contacts) {
+    i.push_back(c.i);
+    j.push_back(c.j);
+    branch.push_back(c.branch);
+    force.push_back(c.force);
+    spring.push_back(c.spring);
+    overlap.push_back(c.overlap);
+  }
+  file.write(list + "i", i);            // rows of grains/*, not ids
+  file.write(list + "j", j);            // the same, or -1 - wall
+  file.write(list + "branch", branch);  // x_i - x_j, minimum image
+  file.write(list + "force", force);    // on i
+  file.write(list + "spring", spring);
+  file.write(list + "overlap", overlap);
+}
+
+std::vector<std::pair<std::string, std::string>> write_dem_vtk(const std::filesystem::path& directory, int number,
+                                                               const dem::DemState& state, const std::vector<dem::Contact>& contacts) {
+  const dem::Grains& g = state.grains;
+  const FullStep full(state);
+  std::vector<Vec3> x;
+  std::vector<double> radius, speed;
+  for (std::size_t i = 0; i < g.x.size(); ++i) {
+    x.push_back(wrap(state.box, g.x[i]));
+    radius.push_back(0.5 * g.diameter[i]);
+    speed.push_back(norm(full.v[i]));
+  }
+  const std::string grains_name = fmt::format("grains_{:06}.vtp", number), contacts_name = fmt::format("contacts_{:06}.vtp", number);
+  io::write_vtp_points(directory / grains_name, x,
+                       {{"id", g.id}, {"type", g.species}, {"radius", radius}, {"mass", g.mass}, {"v", full.v},
+                        {"speed", speed}, {"omega", full.omega}, {"f", g.force}, {"tq", g.torque}});
+
+  std::vector<std::array<Vec3, 2>> segments;
+  std::vector<double> force, overlap;
+  for (const dem::Contact& c : contacts) {
+    const Vec3 at = wrap(state.box, g.x[static_cast<std::size_t>(c.i)]);
+    segments.push_back({at, at - c.branch});
+    force.push_back(norm(c.force));
+    overlap.push_back(c.overlap);
+  }
+  io::write_vtp_lines(directory / contacts_name, segments, {{"force", force}, {"overlap", overlap}});
+  return {{"grains", grains_name}, {"contacts", contacts_name}};
+}
+
+namespace {
+
+// Front and height of a spreading column: the radius within which 99 % of the mass lies, and the top of the pile.
+void add_column(nlohmann::ordered_json& summary, const DemInput& in) {
+  const dem::Grains& g = in.state.grains;
+  std::vector<std::pair<double, double>> by_radius;
+  double mass = 0, top = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(g.flowing); ++i) {
+    by_radius.emplace_back(std::hypot(g.x[i].x, g.x[i].y), g.mass[i]);
+    mass += g.mass[i];
+    top = std::max(top, g.x[i].z + 0.5 * g.diameter[i]);
+  }
+  std::sort(by_radius.begin(), by_radius.end());
+  double within = 0, front = 0;
+  for (const auto& [r, m] : by_radius) {
+    if (within >= 0.99 * mass) break;
+    within += m;
+    front = r;
+  }
+  nlohmann::ordered_json column;
+  const double r0 = in.column_radius;
+  if (in.scenario == "column") column["aspect_ratio"] = in.column_height / r0;
+  column["r0"] = r0;
+  column["r_final"] = front;
+  column["runout"] = (front - r0) / r0;
+  column["height_final"] = top;
+  column["slope_deg"] = std::atan2(top, front) * 180 / M_PI;
+  summary[in.scenario] = column;
+}
+
+}  // namespace
+
+void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double initial_energy) {
+  const dem::Energies e = dem::energies(in.state, in.laws);
+  nlohmann::ordered_json energy;
+  energy["kinetic"] = e.kinetic();
+  energy["elastic"] = e.elastic();
+  energy["gravity"] = e.gravity;
+  energy["ratio"] = e.elastic() > 0 ? e.kinetic() / e.elastic() : NAN;
+  energy["ledger_residual"] = in.state.keep_ledger ? e.total() + dem::lost(in.state.ledger) - initial_energy : NAN;
+  summary["energy"] = energy;
+  summary["max_overlap_over_radius"] = dem::max_overlap_over_radius(in.state);
+  if (in.scenario == "column" || in.scenario == "heap") add_column(summary, in);
+}
+
+std::vector<Derived> dem_derived(const DemInput& in) {
+  std::vector<Derived> out;
+  const auto number = [](double v) { return fmt::format("{:.6g}", v); };
+  for (const dem::ContactType& type : dem::contact_types(in.state, in.model)) {
+    const std::string pair = type.a + "-" + type.b;
+    out.push_back({"contact " + pair, fmt::format("m_ij = {:.6g}", type.reduced_mass), "reduced mass at which the following hold"});
+    out.push_back({"  collision time tc", number(type.tc), "eq. 5"});
+    out.push_back({"  restitution", number(type.restitution), "eq. 6"});
+    out.push_back({"  kn, gamma_n", fmt::format("{:.6g}, {:.6g}", type.kn, type.gamma_n), "f_n = kn delta - gamma_n v_n"});
+    out.push_back({"  kt, gamma_t, mu", fmt::format("{:.6g}, {:.6g}, {:.6g}", type.kt, type.gamma_t, type.mu), "tangential"});
+  }
+  const dem::Grains& g = in.state.grains;
+  const double steps = std::ceil(in.end / in.state.dt - 1e-6), grain_steps = steps * static_cast<double>(g.flowing);
+  const double state_mb = static_cast<double>(g.size()) * 190e-6 + static_cast<double>(g.flowing) * 2 * 80e-6;
+  out.push_back({"time step", number(in.state.dt), "algorithm 1"});
+  out.push_back({"steps", fmt::format("{:.0f}", steps), ""});
+  out.push_back({"grains", fmt::format("{} + {} fixed", g.flowing, g.size() - g.flowing), "flowing + base"});
+  out.push_back({"grain-steps", fmt::format("{:.3g}", grain_steps), "at 3e7 per second and core: " + fmt::format("{:.0f} core-seconds", grain_steps / 3e7)});
+  out.push_back({"memory", fmt::format("{:.1f} MB", static_cast<double>(g.size()) * 600e-6), "about"});
+  out.push_back({"disk", fmt::format("{:.2f} MB", state_mb), "per snapshot, ParaView file or checkpoint, about"});
+  return out;
+}
+
+}  // namespace bagnold::app

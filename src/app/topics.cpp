@@ -1,0 +1,14 @@
+#include "app/topics.hpp"
+
+#include "app/driver.hpp"
+
+namespace bagnold::app {
+
+std::vector<Topic> all_topics() {
+  std::vector<Topic> topics;
+  add_dem_topics(topics);
+  topics.push_back(topic<OutputSettings>("section of every case"));
+  return topics;
+}
+
+}  // namespace bagnold::app

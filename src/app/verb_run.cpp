@@ -1,0 +1,113 @@
+// bagnold run CASE.toml, bagnold resume DIR: from a case to a run directory.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/driver.hpp"
+#include "app/signals.hpp"
+#include "app/verbs.hpp"
+#include "config/case.hpp"
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "io/files.hpp"
+
+namespace bagnold::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  std::string input, directory;
+  std::vector<std::string> set;
+  int threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
+// A directory that holds a run is never silently replaced; one that holds anything else is never touched.
+void prepare_directory(const fs::path& directory, bool overwrite) {
+  std::error_code failed;
+  if (fs::exists(directory, failed) && !fs::is_empty(directory, failed)) {
+    const bool is_run = fs::exists(directory / "case.toml");
+    if (!is_run) throw InputError(fmt::format("{}: error: exists and is not a run directory, expected a new one", directory.string()));
+    if (!overwrite)
+      throw InputError(fmt::format("{}: error: holds a run already, expected a new directory, --overwrite, or 'bagnold resume {}'",
+                                   directory.string(), directory.string()));
+    for (const char* name : {"case.toml", "summary.json", "series.csv", "profile.csv", "run.h5", "checkpoint.h5",
+                             "checkpoint.prev.h5", "report.html", "vtk", "figures"})
+      fs::remove_all(directory / name, failed);
+  }
+  fs::create_directories(directory, failed);
+  if (failed) throw IoError(fmt::format("{}: cannot be created: {}", directory.string(), failed.message()));
+}
+
+RunContext read_context(config::Case& input, Model& model, const fs::path& directory, bool quiet) {
+  RunContext context;
+  context.directory = directory;
+  context.quiet = quiet;
+  const config::Section root = input.root();
+  context.model_name = root.get<std::string>("model", std::nullopt);
+  context.seed = root.get<std::int64_t>("seed", 1);
+  const config::Section output = root.child("output");
+  context.output = output.read<OutputSettings>();
+  const auto settle = [&](std::optional<double>& every, const char* key, double parts) {
+    if (!every) every = model.end_time() / parts;
+    output.resolve(key, *every);
+  };
+  settle(context.output.series_every, "series_every", 1000);
+  settle(context.output.snapshot_every, "snapshot_every", 10);
+  settle(context.output.vtk_every, "vtk_every", 20);
+  input.reject_unread();
+  context.resolved_case = input.resolved();
+  return context;
+}
+
+int run(const RunOptions& options) {
+  set_threads(options.threads);
+  config::Case input = config::Case::from_file(options.input, options.set);
+  const auto model = make_model(input);
+  const fs::path directory =
+      options.directory.empty() ? fs::path("out") / fs::path(options.input).stem() : fs::path(options.directory);
+  const RunContext context = read_context(input, *model, directory, options.quiet);
+  prepare_directory(directory, options.overwrite);
+  io::write_file(directory / "case.toml", context.resolved_case);
+  return drive(*model, context);
+}
+
+int resume(const RunOptions& options) {
+  set_threads(options.threads);
+  const fs::path directory = options.input;
+  if (!fs::exists(directory / "case.toml"))
+    throw InputError(fmt::format("{}: error: is not a run directory (no case.toml), expected the DIR of 'bagnold run -o DIR'", options.input));
+  config::Case input = config::Case::from_file((directory / "case.toml").string());
+  const auto model = make_model(input);
+  RunContext context = read_context(input, *model, directory, options.quiet);
+  context.resume = true;
+  return drive(*model, context);
+}
+
+}  // namespace
+
+void add_run(CLI::App& cli, int& exit_code) {
+  CLI::App* verb = cli.add_subcommand("run", "Run a case");
+  const auto options = std::make_shared<RunOptions>();
+  verb->add_option("CASE", options->input, "Case file (.toml)")->required();
+  verb->add_option("-o,--output", options->directory, "Run directory (default: out/<name of the case>)");
+  verb->add_option("--set", options->set, "Override a key: key.path=value (repeatable)")->allow_extra_args(false);
+  verb->add_option("--threads", options->threads, "Threads (default: OMP_NUM_THREADS, SLURM_CPUS_PER_TASK, all cores)")->check(CLI::PositiveNumber);
+  verb->add_flag("--overwrite", options->overwrite, "Replace the run that the directory holds");
+  verb->add_flag("--quiet", options->quiet, "No progress");
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+void add_resume(CLI::App& cli, int& exit_code) {
+  CLI::App* verb = cli.add_subcommand("resume", "Continue exactly where a run was interrupted or killed");
+  const auto options = std::make_shared<RunOptions>();
+  verb->add_option("DIR", options->input, "Run directory")->required();
+  verb->add_option("--threads", options->threads, "Threads (the result does not depend on it)")->check(CLI::PositiveNumber);
+  verb->add_flag("--quiet", options->quiet, "No progress");
+  verb->callback([options, &exit_code] { exit_code = resume(*options); });
+}
+
+}  // namespace bagnold::app

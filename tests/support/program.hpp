@@ -1,0 +1,60 @@
+// Runs the built program as a user would, in a scratch directory that is removed afterwards.
+#pragma once
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace bagnold::test {
+
+namespace fs = std::filesystem;
+
+inline std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+inline void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (fs::temp_directory_path() / "bagnold-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch directory");
+    path_ = name;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+// `environment` goes before the command, for example "OMP_NUM_THREADS=2".
+inline Outcome bagnold(const Scratch& scratch, const std::string& arguments, const std::string& environment = "") {
+  const std::string command = "cd '" + scratch.path().string() + "' && " + environment + " '" BAGNOLD_PROGRAM "' " +
+                              arguments + " >stdout.txt 2>stderr.txt </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read_text(scratch / "stdout.txt"), read_text(scratch / "stderr.txt")};
+}
+
+inline std::string case_file(const std::string& name) { return std::string(BAGNOLD_SOURCE_DIR "/cases/") + name; }
+
+}  // namespace bagnold::test
