@@ -26,14 +26,14 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     cli.exit(error);
     return 2;
-  } catch (const InputError& error) {
+  } catch (const InputError& error) {  // its text says where, and "error:"
     fmt::print(stderr, "{}\n", error.what());
     return 2;
   } catch (const NumericalError& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return 3;
   } catch (const IoError& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "{}\n", error.what());
     return 4;
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: {} (this is a bug, please report it)\n", error.what());

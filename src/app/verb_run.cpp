@@ -39,7 +39,7 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
       fs::remove_all(directory / name, failed);
   }
   fs::create_directories(directory, failed);
-  if (failed) throw IoError(fmt::format("{}: cannot be created: {}", directory.string(), failed.message()));
+  if (failed) throw IoError(fmt::format("{}: error: cannot be created: {}", directory.string(), failed.message()));
 }
 
 RunContext read_context(config::Case& input, Model& model, const fs::path& directory, bool quiet) {

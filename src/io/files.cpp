@@ -39,8 +39,7 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
     out.close();
     if (!out) fail(path, "cannot write");
   }
-  sync_to_disk(part);
-  rename_durably(part, path);
+  if (std::rename(part.c_str(), path.c_str()) != 0) fail(path, "cannot replace");
 }
 
 std::filesystem::path part_of(const std::filesystem::path& path) { return path.string() + ".part"; }

@@ -9,8 +9,9 @@ namespace bagnold::io {
 // The content of `path`. Throws IoError.
 std::string read_file(const std::filesystem::path& path);
 
-// Replaces `path` by `content` in one step: written next to it, synchronised to disk, renamed. Throws
-// IoError.
+// Replaces `path` by `content` in one step: written next to it, renamed. Whoever reads meets the old or the new file
+// whole, also after a crash of the program; what must survive a power cut (checkpoints) is synchronised by its writer.
+// Throws IoError.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 // `path` with ".part" appended: where a file is built before it takes its name.
