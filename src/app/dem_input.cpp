@@ -113,11 +113,15 @@ DemInput read_unlocated(config::Case& input) {
   out.laws = dem::compile(out.model, dem::mean_pair_mass(out.state.grains));
   out.state.dt = time.step ? *time.step : automatic_step(out);
   time_section.resolve("step", out.state.dt);
+  try {
+    dem::prepare(out.state, out.laws);
+  } catch (const NumericalError& error) {  // no step has been taken: the start itself is wrong
+    input.fail("scenario", error.what());
+  }
   for (const dem::Finding& finding : dem::physical_findings(out.state, out.model)) {
     if (finding.error) input.fail(finding.key, finding.text);
     out.warnings.push_back(finding.key + ": " + finding.text);
   }
-  dem::prepare(out.state, out.laws);
   return out;
 }
 

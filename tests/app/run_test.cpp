@@ -163,6 +163,25 @@ INSTANTIATE_TEST_SUITE_P(Input, Rejects, testing::Values(
     BadInput{"grains.density=-2", "expected > 0"},
     BadInput{"seed=1.5", "expected an integer"}));
 
+TEST(Run, CatchesOverlapsAtTheStart) {
+  const Scratch scratch;
+  const auto pair_at = [&](double distance) {
+    write_text(scratch / "c.toml", "model = \"dem\"\n[scenario]\nkind = \"grains\"\n"
+        "[[scenario.grains]]\nposition = [0, 0, 0]\n[[scenario.grains]]\nposition = [" + std::to_string(distance) + ", 0, 0]\n"
+        "[contact]\nstiffness = 2e5\ndamping = 25\n[time]\nend = 0.01\n");
+    return bagnold(scratch, "run c.toml -o a --quiet --overwrite");
+  };
+  for (const double distance : {0.9, 0.3, 0.0}) {
+    const Outcome outcome = pair_at(distance);
+    EXPECT_EQ(outcome.exit_code, 2) << distance << outcome.err;
+    EXPECT_NE(outcome.err.find("overlap"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("c.toml:2", 0), 0u) << outcome.err;
+  }
+  const Outcome slight = pair_at(0.98);
+  EXPECT_EQ(slight.exit_code, 0);
+  EXPECT_NE(slight.err.find("warning: scenario: grains overlap"), std::string::npos) << slight.err;
+}
+
 TEST(Run, SaysWhereInTheFile) {
   const Scratch scratch;
   write_text(scratch / "c.toml", tiny + "ned = 5\n");
