@@ -19,6 +19,8 @@ int run(int argc, char** argv) {
   add_resume(cli, exit_code);
   add_check(cli, exit_code);
   add_explain(cli, exit_code);
+  add_cg(cli, exit_code);
+  add_report(cli, exit_code);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/bed_store.hpp"
+#include "app/dem_flow.hpp"
 #include "app/topics.hpp"
 #include "core/error.hpp"
 #include "scenario/granular.hpp"
@@ -142,9 +143,11 @@ void add_dem_topics(std::vector<Topic>& topics) {
   topics.push_back(topic<scenario::Singles>("scenario of model dem"));
   topics.push_back(topic<scenario::GrainMaterial>("section of model dem"));
   topics.push_back(topic<DemTime>("section of model dem"));
+  topics.push_back(topic<CgKeys>("section of model dem"));
   add_registry<laws::NormalLaws>(topics, "normal contact law, contact.normal");
   add_registry<laws::TangentialLaws>(topics, "tangential contact law, contact.tangential");
   add_registry<laws::RollingLaws>(topics, "rolling law, contact.rolling");
+  add_registry<laws::CgKernels>(topics, "coarse-graining function, cg.kernel");
 }
 
 }  // namespace bagnold::app

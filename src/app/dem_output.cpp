@@ -94,15 +94,21 @@ void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::D
   file.write(grains + "diameter", g.diameter);
   file.write(grains + "mass", g.mass);
   file.write(grains + "species", g.species);
+  file.write(grains + "inertia", g.inertia);
+  const Box& box = state.box;
+  file.write(grains + "box", std::vector<double>{box.origin.x, box.origin.y, box.origin.z, box.length.x, box.length.y, box.length.z,
+                                                 box.periodic[0] * 1.0, box.periodic[1] * 1.0, box.periodic[2] * 1.0});
+  file.write(grains + "gravity", std::vector<double>{state.gravity.x, state.gravity.y, state.gravity.z});
   file.attribute(group + "/grains", "flowing", g.flowing);
 
   std::vector<std::int32_t> i, j;
-  std::vector<Vec3> branch, force, spring;
+  std::vector<Vec3> branch, normal, force, spring;
   std::vector<double> overlap;
   for (const dem::Contact& c : contacts) {
     i.push_back(c.i);
     j.push_back(c.j);
     branch.push_back(c.branch);
+    normal.push_back(c.normal);
     force.push_back(c.force);
     spring.push_back(c.spring);
     overlap.push_back(c.overlap);
@@ -110,6 +116,7 @@ void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::D
   file.write(list + "i", i);            // rows of grains/*, not ids
   file.write(list + "j", j);            // the same, or -1 - wall
   file.write(list + "branch", branch);  // x_i - x_j, minimum image
+  file.write(list + "normal", normal);  // unit vector, from j to i
   file.write(list + "force", force);    // on i
   file.write(list + "spring", spring);
   file.write(list + "overlap", overlap);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/dem_flow.hpp"
 #include "app/dem_input.hpp"
 #include "app/dem_output.hpp"
 #include "app/model.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 class DemModel final : public Model {
  public:
-  explicit DemModel(DemInput input) : in_(std::move(input)), initial_energy_(dem::energies(in_.state, in_.laws).total()) {
+  DemModel(DemInput input, std::optional<DemFlow> flow)
+      : in_(std::move(input)), flow_(std::move(flow)), initial_energy_(dem::energies(in_.state, in_.laws).total()) {
     for (const std::string& warning : in_.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (in_.gravity > 0) {
       const double unit = std::sqrt(in_.diameter / in_.gravity);
@@ -39,7 +41,9 @@ class DemModel final : public Model {
     while (in_.state.step < last && !ended() && !stop_requested()) {
       std::int64_t steps = std::min(last - in_.state.step, chunk);
       if (arrest_check_ > 0) steps = std::min(steps, arrest_check_ - in_.state.step % arrest_check_);
+      if (flow_) steps = std::min(steps, flow_->next_step(in_.state.step) - in_.state.step);
       dem::advance(in_.state, in_.laws, steps);
+      if (flow_) flow_->observe(in_);
       grain_steps_ += static_cast<double>(steps * in_.state.grains.flowing);
       if (arrest_check_ > 0 && in_.state.step % arrest_check_ == 0 && time() > arrest_from_) check_arrest();
     }
@@ -53,6 +57,8 @@ class DemModel final : public Model {
     for (NamedArray& a : arrays) a.name = "dem/" + a.name;
     arrays.push_back({"arrested", &arrested_});
     arrays.push_back({"initial_energy", &initial_energy_});
+    if (flow_)
+      for (NamedArray& a : flow_->state()) arrays.push_back(std::move(a));
     return arrays;
   }
   void restored() override {}
@@ -74,7 +80,9 @@ class DemModel final : public Model {
     dem::list_contacts(in_.state, in_.laws, contacts_);
     return write_dem_vtk(directory, number, in_.state, contacts_);
   }
-  void write_results(const std::filesystem::path&) override {}
+  void write_results(const std::filesystem::path& directory) override {
+    if (flow_) flow_->write(directory, in_);
+  }
 
   void add_summary(nlohmann::ordered_json& summary, double wall_s) override {
     summary["grains"] = in_.state.grains.flowing;
@@ -82,6 +90,7 @@ class DemModel final : public Model {
     summary["particle_steps_per_s"] = wall_s > 0 ? grain_steps_ / wall_s : NAN;
     summary["list_rebuilds"] = in_.state.rebuilds;
     add_dem_summary(summary, in_, initial_energy_);
+    if (flow_) flow_->add_summary(summary, in_);
   }
 
   std::vector<Derived> derived() override { return dem_derived(in_); }
@@ -93,6 +102,7 @@ class DemModel final : public Model {
   }
 
   DemInput in_;
+  std::optional<DemFlow> flow_;                   // of flows that are periodic in x and y
   double initial_energy_;
   std::int64_t arrested_ = 0, arrest_check_ = 0;  // steps between checks; 0: none
   double arrest_from_ = 0;
@@ -102,6 +112,11 @@ class DemModel final : public Model {
 
 }  // namespace
 
-std::unique_ptr<Model> make_dem(config::Case& input) { return std::make_unique<DemModel>(read_dem(input)); }
+std::unique_ptr<Model> make_dem(config::Case& input) {
+  DemInput in = read_dem(input);
+  std::optional<DemFlow> flow;
+  if (in.scenario == "chute") flow.emplace(input.root().child("cg"), in);
+  return std::make_unique<DemModel>(std::move(in), std::move(flow));
+}
 
 }  // namespace bagnold::app

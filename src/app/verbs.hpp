@@ -9,5 +9,7 @@ void add_run(CLI::App& cli, int& exit_code);
 void add_resume(CLI::App& cli, int& exit_code);
 void add_check(CLI::App& cli, int& exit_code);
 void add_explain(CLI::App& cli, int& exit_code);
+void add_cg(CLI::App& cli, int& exit_code);
+void add_report(CLI::App& cli, int& exit_code);
 
 }  // namespace bagnold::app

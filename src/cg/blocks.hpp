@@ -29,6 +29,8 @@ class BlockedProfile {
 
   void add(const Snapshot& snapshot);
   std::int64_t samples() const;              // so far, the unfinished block included
+  const laws::CgKernels::Any& kernel() const { return current_.kernel; }
+  const Lattice& lattice() const { return current_.lattice; }
   std::int64_t complete_blocks() const { return static_cast<std::int64_t>(scalars_.size()) / scalars_per_block; }
 
   MeanProfile mean() const;                                               // of every sample

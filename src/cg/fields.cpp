@@ -28,8 +28,8 @@ double velocity_gradient(const Local& at, std::size_t a, std::size_t b) {
   return (at.gradient.d[b][1 + a] - velocity(at, a) * at.gradient.d[b][0]) / at.mean[kMass];
 }
 
-double contact(const Local& at, std::size_t a, std::size_t b) { return -at.mean[kContact + 3 * a + b]; }
-double base(const Local& at, std::size_t a, std::size_t b) { return -at.mean[kBase + 3 * a + b]; }
+double contact(const Local& at, std::size_t a, std::size_t b) { return 0 - at.mean[kContact + 3 * a + b]; }   // no negative zeros
+double base(const Local& at, std::size_t a, std::size_t b) { return 0 - at.mean[kBase + 3 * a + b]; }
 // <m v v W> - p p / rho; contains the shear across the kernel and the Reynolds stress of slow fluctuations.
 double kinetic(const Local& at, std::size_t a, std::size_t b) {
   if (at.mean[kMass] <= 0) return 0;
