@@ -109,7 +109,7 @@ void add_stresses(Definitions& all) {
   add_tensor(all, "sigma", unit, "stress, compression positive: contact + base + kinetic", false, total);
   add_tensor(all, "sigma_c", unit, "stress of contacts between flowing grains", false, contact);
   add_tensor(all, "sigma_b", unit, "stress of contacts with the base", false, base);
-  add_tensor(all, "sigma_k", unit, "kinetic stress, shear across the kernel included", true, kinetic);
+  add_tensor(all, "sigma_k", unit, "kinetic stress, shear across the kernel included", false, kinetic);
   add_tensor(all, "sigma_shear", unit, "part of the kinetic stress that is the mean shear across the kernel, rho w^2 (dV_a/dr)(dV_b/dr)", true,
              [](const Local& at, std::size_t a, std::size_t b) { return is_empty(at) ? 0.0 : shear_bias(at, a, b); });
   all.push_back({"pressure", unit, "trace of the stress over three", pressure});
