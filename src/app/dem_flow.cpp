@@ -97,6 +97,7 @@ void DemFlow::add_summary(nlohmann::ordered_json& summary, const DemInput& in) c
   flow["theta_deg"] = in.angle_deg;
   flow["lambda"] = in.base_size_ratio;
   flow["fill_height"] = in.fill_height;
+  flow["gravity_normal"] = -in.state.gravity.z;
   add_flow_numbers(flow, numbers, errors);
   flow["max_overlap_over_radius"] = max_overlap_;
   flow["base_grains"] = in.state.grains.size() - in.state.grains.flowing;

@@ -113,18 +113,15 @@ std::optional<Curve> bagnold_profile(const RunData& run, bool several) {
   return curve;
 }
 
-// The weight per area above z: integral of rho g cos(theta), scaled so that it meets the normal stress at the bottom of
-// the profile; the scale is g cos(theta), which the profile itself does not hold.
+// The weight per area above z: integral of rho g cos(theta), with g cos(theta) from the summary.
 std::optional<Curve> weight_above(const RunData& run, bool several) {
   const auto& profile = *run.profile;
-  if (!profile.has("rho") || !profile.has("sigma_zz") || profile.rows() < 2) return std::nullopt;
-  const auto &z = profile["z"], &rho = profile["rho"], &stress = profile["sigma_zz"];
+  const double g = number(run, "flow", "gravity_normal");
+  if (!profile.has("rho") || profile.rows() < 2 || !std::isfinite(g)) return std::nullopt;
+  const auto &z = profile["z"], &rho = profile["rho"];
   std::vector<double> weight(z.size(), 0.0);
   for (std::size_t k = z.size() - 1; k-- > 0;)
-    weight[k] = weight[k + 1] + 0.5 * (rho[k] + rho[k + 1]) * (z[k + 1] - z[k]);
-  const double top = *std::max_element(stress.begin(), stress.end()), total = weight.front();
-  if (!(top > 0) || !(total > 0)) return std::nullopt;
-  for (double& w : weight) w *= top / total;
+    weight[k] = weight[k + 1] + 0.5 * g * (rho[k] + rho[k + 1]) * (z[k + 1] - z[k]);
   return Curve{.label = legend(run, "weight above", several), .x = weight, .y = z, .stroke = Stroke::dashed};
 }
 
@@ -191,6 +188,35 @@ void add_profiles(std::vector<Figure>& all, std::span<const RunData> runs) {
   }
 }
 
+// Figure 14: the rate of strain in units of the mean one, over the depth in units of the height, and Bagnold's,
+// (5/2) (1 - z/h)^(1/2).
+void add_strain(std::vector<Figure>& all, std::span<const RunData> runs) {
+  Figure figure{"strain",
+                "Rate of strain over its depth average, (h/u) du/dz, against height over flow height. Dashed: Bagnold's "
+                "profile (Weinhart et al. 2012, figure 14).",
+                "(h/u) du/dz", "(z - b)/h", false, false, {}};
+  for (const auto& run : runs) {
+    const double h = number(run, "flow", "h"), base = number(run, "flow", "base"), mean = number(run, "flow", "u_bar");
+    if (!run.profile || !run.profile->has("grad_u_xz") || !std::isfinite(h * base / mean)) continue;
+    const auto &z = (*run.profile)["z"], &rate = (*run.profile)["grad_u_xz"];
+    Curve curve{.label = legend(run, "", runs.size() > 1), .x = {}, .y = {}};
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      if (z[k] < base || z[k] > base + h) continue;
+      curve.x.push_back(h / mean * rate[k]);
+      curve.y.push_back((z[k] - base) / h);
+    }
+    figure.curves.push_back(std::move(curve));
+  }
+  if (figure.curves.empty()) return;
+  Curve reference{.label = "Bagnold", .x = {}, .y = {}, .stroke = Stroke::dashed};
+  for (int k = 0; k <= 100; ++k) {
+    reference.x.push_back(2.5 * std::sqrt(1 - 0.01 * k));
+    reference.y.push_back(0.01 * k);
+  }
+  figure.curves.push_back(std::move(reference));
+  keep(all, std::move(figure));
+}
+
 void add_widths(std::vector<Figure>& all, std::span<const RunData> runs) {
   Figure figure{"widths",
                 "Solid fraction for several widths of the kernel, in grain diameters: narrow ones show the layers of "
@@ -239,6 +265,7 @@ std::string quoted(const std::string& text) {
 std::vector<Figure> figures(std::span<const RunData> runs) {
   std::vector<Figure> all;
   add_profiles(all, runs);
+  add_strain(all, runs);
   add_widths(all, runs);
   add_steadiness(all, runs);
   add_series(all, runs);

@@ -35,15 +35,16 @@ class Report : public testing::Test {
                                                                               {"u_bar", mean},
                                                                               {"u_bar_err", 0.01},
                                                                               {"theta_deg", 24.0},
+                                                                              {"gravity_normal", 0.9},
                                                                               {"alpha", nullptr}}}});
     const std::vector<io::Column> profile{
-        {"z", "d", ""}, {"u_x", "", ""}, {"rho", "", ""}, {"sigma_zz", "", ""}, {"mu", "", ""}};
-    std::vector<std::vector<double>> cells(5);
+        {"z", "d", ""}, {"u_x", "", ""}, {"rho", "", ""}, {"sigma_zz", "", ""}, {"mu", "", ""}, {"grad_u_xz", "", ""}};
+    std::vector<std::vector<double>> cells(6);
     for (int k = 0; k <= 20; ++k) {
       const double z = h * k / 20;
       const std::vector<double> row{z, 5.0 / 3 * mean * (1 - std::pow(1 - z / h, 1.5)), 1.1, 1.1 * 0.9 * (h - z),
-                                    0.445};
-      for (std::size_t c = 0; c < 5; ++c) cells[c].push_back(row[c]);
+                                    0.445, 2.5 * mean / h * std::sqrt(1 - z / h)};
+      for (std::size_t c = 0; c < 6; ++c) cells[c].push_back(row[c]);
     }
     io::write_csv(root / "steady" / "profile.csv", profile, cells, io::CsvHeader::names_and_units);
     io::write_csv(root / "steady" / "series.csv", {{"t", "", ""}, {"energy_ratio", "", ""}, {"other", "", ""}},
@@ -80,6 +81,12 @@ TEST_F(Report, ReferenceCurvesMeetTheirTheory) {
     EXPECT_NEAR(stress->curves[0].x[k], stress->curves[1].x[k], 1e-12 * h);
 
   EXPECT_NEAR(find(all, "friction")->curves[1].x[0], std::tan(24 * M_PI / 180), 1e-15);
+
+  const auto* strain = find(all, "strain");
+  ASSERT_NE(strain, nullptr);
+  ASSERT_EQ(strain->curves.size(), 2u);
+  for (std::size_t k = 0; k < strain->curves[0].x.size(); ++k)  // both are Bagnold's, at other heights
+    EXPECT_NEAR(strain->curves[0].x[k], 2.5 * std::sqrt(1 - strain->curves[0].y[k]), 1e-12);
 }
 
 TEST_F(Report, LogarithmicAxesGetNoZeros) {
