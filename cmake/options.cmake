@@ -4,7 +4,8 @@ target_compile_features(bagnold_options INTERFACE cxx_std_20)
 target_include_directories(bagnold_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
 # No -ffast-math anywhere: results must be reproducible. These two change no result, they only say
 # that nobody reads errno after sqrt or installs floating-point traps, which lets loops vectorise.
-target_compile_options(bagnold_options INTERFACE -Wall -Wextra -Wshadow -Wno-missing-field-initializers -fno-math-errno -fno-trapping-math)
+target_compile_options(bagnold_options INTERFACE -Wall -Wextra -Wshadow -Wno-missing-field-initializers -fno-math-errno -fno-trapping-math
+  -Wno-psabi)  # vector types are never passed between objects built with different flags
 # g++ 12 sees an overflow in fmt 9 that is not there, as soon as native instructions are on.
 target_compile_options(bagnold_options INTERFACE -Wno-stringop-overflow)
 if(BAGNOLD_NATIVE)

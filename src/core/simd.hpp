@@ -25,7 +25,7 @@ inline namespace plain {
 #endif
 
 inline constexpr int register_lanes = 8;
-using Register = double __attribute__((vector_size(64)));
+using Register = double __attribute__((vector_size(64), may_alias));
 
 namespace detail {
 
@@ -148,6 +148,29 @@ std::uint32_t to_integer(const Mask<Registers>& m) {
 template <int Registers>
 bool any(const Mask<Registers>& m) {
   return to_integer(m) != 0;
+}
+
+// Writes the numbers whose bit is set to the front of `out`, which has room for eight; returns how many.
+inline int compress(std::uint32_t bits, const std::uint32_t* in, std::uint32_t* out) {
+#ifdef BAGNOLD_AVX512
+  const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(in));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), all));
+#else
+  for (int k = 0, n = 0; k < register_lanes; ++k)
+    if (bits >> k & 1) out[n++] = in[k];
+#endif
+  return __builtin_popcount(bits);
+}
+
+// base[index[k]] in lane k.
+inline Pack<1> gather(const double* base, const std::uint32_t* index) {
+  Pack<1> p;
+#ifdef BAGNOLD_AVX512
+  p.v[0] = _mm512_mask_i32gather_pd(Register{}, 0xff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), base, 8);
+#else
+  for (int k = 0; k < register_lanes; ++k) p.set(k, base[index[k]]);
+#endif
+  return p;
 }
 
 // The integer nearest to a, for |a| < 2^51: adding 1.5 * 2^52 leaves no room for a fraction.

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "dem/contact_laws.hpp"
 #include "dem/energy.hpp"
+#include "dem/fast/engine.hpp"
 #include "dem/forces.hpp"
 #include "dem/neighbours.hpp"
 
@@ -71,6 +72,13 @@ void prepare(DemState& state, const ContactLaws& laws) {
 }
 
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps) {
+  if (fast::supports(state))
+    fast::advance(state, laws, steps);
+  else
+    advance_plain(state, laws, steps);
+}
+
+void advance_plain(DemState& state, const ContactLaws& laws, std::int64_t steps) {
   for (const std::int64_t end = state.step + steps; state.step < end;) {
     kick(state);                                // v, omega at t + dt/2
     drift(state);                               // x at t + dt

@@ -153,7 +153,9 @@ double sum_forces(DemState& state, const Tables& tables, double dt) {
   return excess;
 }
 
-[[noreturn]] void report_overlap(const DemState& state) {
+}  // namespace
+
+void report_overlap(const DemState& state) {
   const Grains& g = state.grains;
   const auto shift = neighbours::image_shifts(state.box);
   const auto fail = [&](std::int64_t id, const std::string& partner, double ratio) {
@@ -173,8 +175,6 @@ double sum_forces(DemState& state, const Tables& tables, double dt) {
     }
   throw NumericalError(fmt::format("step {}: an overlap is too large", state.step));
 }
-
-}  // namespace
 
 void evaluate_forces(DemState& state, const ContactLaws& laws, double dt) {
   const double excess = with_laws(laws, [&](const auto& tables) {

@@ -10,4 +10,7 @@ namespace bagnold::dem {
 // Throws NumericalError when an overlap exceeds max_overlap_ratio.
 void evaluate_forces(DemState& state, const ContactLaws& laws, double dt);
 
+// Names the pair whose overlap is too large.
+[[noreturn]] void report_overlap(const DemState& state);
+
 }  // namespace bagnold::dem

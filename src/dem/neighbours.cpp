@@ -139,6 +139,13 @@ void store(DemState& state, const std::vector<std::vector<Listed>>& listed, int 
   }, worth_threads(state.grains));
 }
 
+}  // namespace
+
+double default_skin(const Grains& grains) {
+  if (grains.flowing == 0) return 0;
+  return 0.12 * *std::min_element(grains.diameter.begin(), grains.diameter.begin() + grains.flowing);
+}
+
 void check_motion(const DemState& state) {
   const Grains& g = state.grains;
   for (std::int64_t i = 0; i < g.flowing; ++i) {
@@ -151,22 +158,20 @@ void check_motion(const DemState& state) {
   }
 }
 
-}  // namespace
-
-double default_skin(const Grains& grains) {
-  if (grains.flowing == 0) return 0;
-  return 0.12 * *std::min_element(grains.diameter.begin(), grains.diameter.begin() + grains.flowing);
+void wrap_positions(DemState& state) {
+  Grains& g = state.grains;
+  for (std::int64_t i = 0; i < g.size(); ++i) {
+    const Vec3 wrapped = wrap(state.box, g.x[at(i)]);
+    if (i < g.flowing) state.ledger.wrapped -= g.mass[at(i)] * dot(state.gravity, wrapped - g.x[at(i)]);
+    g.x[at(i)] = wrapped;
+  }
 }
 
 void rebuild_pairs(DemState& state) {
   check_motion(state);
   Grains& g = state.grains;
   std::vector<Remembered> kept = remember(state);
-  for (std::int64_t i = 0; i < g.size(); ++i) {
-    const Vec3 wrapped = wrap(state.box, g.x[at(i)]);
-    if (i < g.flowing) state.ledger.wrapped -= g.mass[at(i)] * dot(state.gravity, wrapped - g.x[at(i)]);
-    g.x[at(i)] = wrapped;
-  }
+  wrap_positions(state);
 
   const double largest = g.size() == 0 ? 1 : *std::max_element(g.diameter.begin(), g.diameter.end());
   neighbours::CellGrid grid;
@@ -182,13 +187,14 @@ void rebuild_pairs(DemState& state) {
                worth_threads(g));
   store(state, listed, grid.slabs, kept);
   state.pairs.reference.assign(g.x.begin(), g.x.begin() + g.flowing);
+  state.pairs.origin.clear();
   ++state.rebuilds;
 }
 
 void refresh_pairs(DemState& state) {
   const Grains& g = state.grains;
   const double limit = 0.25 * state.skin * state.skin;
-  bool stale = false;
+  bool stale = !state.pairs.origin.empty();
 #pragma omp parallel for schedule(static) reduction(|| : stale) if (worth_threads(g))
   for (std::int64_t i = 0; i < g.flowing; ++i)  // written so that NaN counts as moved
     stale = stale || !(norm2(g.x[at(i)] - state.pairs.reference[at(i)]) <= limit);

@@ -27,6 +27,7 @@ std::vector<NamedArray> named_arrays(DemState& s) {
           {"pair_roll", &p.roll},
           {"pair_slab_begin", &p.slab_begin},
           {"pair_reference", &p.reference},
+          {"pair_origin", &p.origin},
           {"wall_touching", &w.touching},
           {"wall_spring", &w.spring},
           {"wall_roll", &w.roll},

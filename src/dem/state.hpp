@@ -2,6 +2,7 @@
 // store the arrays that named_arrays() lists and nothing else.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/arrays.hpp"
@@ -53,6 +54,8 @@ struct PairList {
   std::vector<Vec3> spring, roll;        // tangential displacement and rolling angle of i relative to j; 0 if apart
   std::vector<std::int64_t> slab_begin;  // pairs of slab s: [slab_begin[s], slab_begin[s + 1])
   std::vector<Vec3> reference;           // x of the flowing grains when the list was made
+  std::vector<double> origin;            // not empty: the fast engine was here, only touching pairs are listed, and
+                                         // this is how it made its own lists (fast/exchange.cpp)
   std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
 };
 
@@ -77,6 +80,16 @@ struct Ledger {
   double opened = 0;        // energy left in tangential and rolling springs when contacts opened
 };
 
+// What makes stepping faster and follows from the state: never part of it, never copied with it.
+struct EngineHandle {
+  std::shared_ptr<void> held;
+  EngineHandle() = default;
+  EngineHandle(const EngineHandle&) {}
+  EngineHandle(EngineHandle&&) = default;
+  EngineHandle& operator=(const EngineHandle&) { return held.reset(), *this; }
+  EngineHandle& operator=(EngineHandle&&) = default;
+};
+
 struct DemState {
   Grains grains;
   Box box;
@@ -95,6 +108,8 @@ struct DemState {
   Ledger ledger;
   std::int64_t rebuilds = 0;          // of the Verlet list
   std::int64_t next_reorder = 0;      // step
+
+  EngineHandle engine;
 
   double time() const { return static_cast<double>(step) * dt; }
 };

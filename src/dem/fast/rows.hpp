@@ -54,14 +54,18 @@ struct Rows {
   std::size_t size() const { return position.size() / position_doubles; }
 };
 
-inline const double* at(const double* rows, std::size_t bytes) {
+inline const double* row_at(const double* rows, std::size_t bytes) {
   return reinterpret_cast<const double*>(reinterpret_cast<const char*>(rows) + bytes);
 }
-inline double* at(double* rows, std::size_t bytes) {
+inline double* row_at(double* rows, std::size_t bytes) {
   return reinterpret_cast<double*>(reinterpret_cast<char*>(rows) + bytes);
 }
 
 // What eight pairs need of their rows.
+struct RowDifference {
+  Vec3Of<Lanes> xyz;
+  Lanes fourth;
+};
 struct Separation {
   Vec3Of<Lanes> r;  // x_i - x_j
   Lanes reach;      // r_i + r_j
@@ -77,33 +81,36 @@ namespace detail {
 
 // Halves of two rows: [a | b].
 inline Register halves(const double* a, const double* b) {
-  return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(a)), _mm256_load_pd(b), 1);
+  return __builtin_shufflevector(_mm256_load_pd(a), _mm256_load_pd(b), 0, 1, 2, 3, 4, 5, 6, 7);
 }
+
+inline Register evens(Register a, Register b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
+inline Register odds(Register a, Register b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
 
 // Register k holds the four numbers of pair k and those of pair k + 4; out[c] holds number c of pairs 0..7.
 inline void transpose4(const Register (&row)[4], Register (&out)[4]) {
-  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13), high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-  const Register even01 = _mm512_unpacklo_pd(row[0], row[1]), even23 = _mm512_unpacklo_pd(row[2], row[3]);
-  const Register odd01 = _mm512_unpackhi_pd(row[0], row[1]), odd23 = _mm512_unpackhi_pd(row[2], row[3]);
-  out[0] = _mm512_permutex2var_pd(even01, low, even23);
-  out[1] = _mm512_permutex2var_pd(odd01, low, odd23);
-  out[2] = _mm512_permutex2var_pd(even01, high, even23);
-  out[3] = _mm512_permutex2var_pd(odd01, high, odd23);
+  const Register even01 = evens(row[0], row[1]), even23 = evens(row[2], row[3]);
+  const Register odd01 = odds(row[0], row[1]), odd23 = odds(row[2], row[3]);
+  out[0] = __builtin_shufflevector(even01, even23, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[1] = __builtin_shufflevector(odd01, odd23, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[2] = __builtin_shufflevector(even01, even23, 2, 3, 10, 11, 6, 7, 14, 15);
+  out[3] = __builtin_shufflevector(odd01, odd23, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
 // Eight rows of eight: out[c] holds number c of rows 0..7.
 inline void transpose8(const Register (&row)[8], Register (&out)[8]) {
-  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11), high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
   for (int parity = 0; parity < 2; ++parity) {
     Register pair[4];
     for (int k = 0; k < 4; ++k)
-      pair[k] = parity == 0 ? _mm512_unpacklo_pd(row[2 * k], row[2 * k + 1]) : _mm512_unpackhi_pd(row[2 * k], row[2 * k + 1]);
-    const Register a = _mm512_permutex2var_pd(pair[0], low, pair[1]), b = _mm512_permutex2var_pd(pair[2], low, pair[3]);
-    const Register c = _mm512_permutex2var_pd(pair[0], high, pair[1]), d = _mm512_permutex2var_pd(pair[2], high, pair[3]);
-    out[parity] = _mm512_shuffle_f64x2(a, b, 0x44);
-    out[parity + 2] = _mm512_shuffle_f64x2(a, b, 0xEE);
-    out[parity + 4] = _mm512_shuffle_f64x2(c, d, 0x44);
-    out[parity + 6] = _mm512_shuffle_f64x2(c, d, 0xEE);
+      pair[k] = parity == 0 ? evens(row[2 * k], row[2 * k + 1]) : odds(row[2 * k], row[2 * k + 1]);
+    const Register a = __builtin_shufflevector(pair[0], pair[1], 0, 1, 8, 9, 2, 3, 10, 11);
+    const Register b = __builtin_shufflevector(pair[2], pair[3], 0, 1, 8, 9, 2, 3, 10, 11);
+    const Register c = __builtin_shufflevector(pair[0], pair[1], 4, 5, 12, 13, 6, 7, 14, 15);
+    const Register d = __builtin_shufflevector(pair[2], pair[3], 4, 5, 12, 13, 6, 7, 14, 15);
+    out[parity] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+    out[parity + 2] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+    out[parity + 4] = __builtin_shufflevector(c, d, 0, 1, 2, 3, 8, 9, 10, 11);
+    out[parity + 6] = __builtin_shufflevector(c, d, 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 
@@ -116,30 +123,49 @@ inline Separation separation(const double* position, const Offset* i, const Offs
   const Register sign = _mm512_setr_pd(-1, -1, -1, 1, -1, -1, -1, 1);
   Register row[4], out[4];
   for (int k = 0; k < 4; ++k)
-    row[k] = detail::halves(at(position, j[k]), at(position, j[k + 4])) * sign +
-             detail::halves(at(position, i[k]), at(position, i[k + 4]));
+    row[k] = detail::halves(row_at(position, j[k]), row_at(position, j[k + 4])) * sign +
+             detail::halves(row_at(position, i[k]), row_at(position, i[k + 4]));
   detail::transpose4(row, out);
-  return {{{{out[0]}}, {{out[1]}}, {{out[2]}}}, {{out[3]}}};
+  Separation s;
+  s.r.x.v[0] = out[0];
+  s.r.y.v[0] = out[1];
+  s.r.z.v[0] = out[2];
+  s.reach.v[0] = out[3];
+  return s;
 }
 
 inline RelativeMotion relative_motion(const double* velocity, const Offset* i, const Offset* j) {
   Register row[8], out[8];
   for (int k = 0; k < 8; ++k)
-    row[k] = _mm512_load_pd(at(velocity, 2 * std::size_t{j[k]})) * detail::subtract_then_add() +
-             _mm512_load_pd(at(velocity, 2 * std::size_t{i[k]}));
+    row[k] = _mm512_load_pd(row_at(velocity, 2 * std::size_t{j[k]})) * detail::subtract_then_add() +
+             _mm512_load_pd(row_at(velocity, 2 * std::size_t{i[k]}));
   detail::transpose8(row, out);
-  return {{{{out[0]}}, {{out[1]}}, {{out[2]}}}, {{{out[4]}}, {{out[5]}}, {{out[6]}}}, {{out[3]}}, {{out[7]}}};
+  RelativeMotion m;
+  m.v.x.v[0] = out[0];
+  m.v.y.v[0] = out[1];
+  m.v.z.v[0] = out[2];
+  m.size_difference.v[0] = out[3];
+  m.spin_sum.x.v[0] = out[4];
+  m.spin_sum.y.v[0] = out[5];
+  m.spin_sum.z.v[0] = out[6];
+  m.inverse_mass.v[0] = out[7];
+  return m;
 }
 
-// Four numbers of the row at `first` in each row: velocity difference (first = 0) or spin difference (first = 4).
-inline Vec3Of<Lanes> difference(const double* velocity, const Offset* i, const Offset* j, std::size_t first) {
+// Half a row: v_i - v_j and r_i - r_j (first = 0), or omega_i - omega_j and 1/m_i - 1/m_j (first = 4).
+inline RowDifference difference(const double* velocity, const Offset* i, const Offset* j, std::size_t first) {
   const auto half = [&](const Offset* o, int k) {
-    return detail::halves(at(velocity, 2 * std::size_t{o[k]}) + first, at(velocity, 2 * std::size_t{o[k + 4]}) + first);
+    return detail::halves(row_at(velocity, 2 * std::size_t{o[k]}) + first, row_at(velocity, 2 * std::size_t{o[k + 4]}) + first);
   };
   Register row[4], out[4];
   for (int k = 0; k < 4; ++k) row[k] = half(i, k) - half(j, k);
   detail::transpose4(row, out);
-  return {{{out[0]}}, {{out[1]}}, {{out[2]}}};
+  RowDifference d;
+  d.xyz.x.v[0] = out[0];
+  d.xyz.y.v[0] = out[1];
+  d.xyz.z.v[0] = out[2];
+  d.fourth.v[0] = out[3];
+  return d;
 }
 
 // Adds force and torque to the rows, pair after pair, so that a grain may appear in several lanes.
@@ -150,8 +176,8 @@ inline void add_to_rows(double* force, const Offset* i, const Offset* j, const V
   Register row[8];
   detail::transpose8(column, row);
   for (int k = 0; k < 8; ++k) {
-    double* a = at(force, 2 * std::size_t{i[k]});
-    double* b = at(force, 2 * std::size_t{j[k]});
+    double* a = row_at(force, 2 * std::size_t{i[k]});
+    double* b = row_at(force, 2 * std::size_t{j[k]});
     _mm512_store_pd(a, _mm512_load_pd(a) + row[k]);
     _mm512_store_pd(b, row[k] * detail::subtract_then_add() + _mm512_load_pd(b));  // -f, +torque
   }
@@ -167,8 +193,8 @@ inline void add_to_rows(double* force, const Offset* i, const Offset* j, const V
   detail::transpose8(on_i, row_i);
   detail::transpose8(on_j, row_j);
   for (int k = 0; k < 8; ++k) {
-    double* a = at(force, 2 * std::size_t{i[k]});
-    double* b = at(force, 2 * std::size_t{j[k]});
+    double* a = row_at(force, 2 * std::size_t{i[k]});
+    double* b = row_at(force, 2 * std::size_t{j[k]});
     _mm512_store_pd(a, _mm512_load_pd(a) + row_i[k]);
     _mm512_store_pd(b, row_j[k] * detail::subtract_then_add() + _mm512_load_pd(b));
   }
@@ -179,7 +205,7 @@ inline void add_to_rows(double* force, const Offset* i, const Offset* j, const V
 inline Separation separation(const double* position, const Offset* i, const Offset* j) {
   Separation s;
   for (int k = 0; k < Lanes::lanes; ++k) {
-    const double *a = at(position, i[k]), *b = at(position, j[k]);
+    const double *a = row_at(position, i[k]), *b = row_at(position, j[k]);
     s.r.x.set(k, a[0] - b[0]);
     s.r.y.set(k, a[1] - b[1]);
     s.r.z.set(k, a[2] - b[2]);
@@ -188,22 +214,23 @@ inline Separation separation(const double* position, const Offset* i, const Offs
   return s;
 }
 
-inline Vec3Of<Lanes> difference(const double* velocity, const Offset* i, const Offset* j, std::size_t first) {
-  Vec3Of<Lanes> d;
+inline RowDifference difference(const double* velocity, const Offset* i, const Offset* j, std::size_t first) {
+  RowDifference d;
   for (int k = 0; k < Lanes::lanes; ++k) {
-    const double *a = at(velocity, 2 * std::size_t{i[k]}) + first, *b = at(velocity, 2 * std::size_t{j[k]}) + first;
-    d.x.set(k, a[0] - b[0]);
-    d.y.set(k, a[1] - b[1]);
-    d.z.set(k, a[2] - b[2]);
+    const double *a = row_at(velocity, 2 * std::size_t{i[k]}) + first, *b = row_at(velocity, 2 * std::size_t{j[k]}) + first;
+    d.xyz.x.set(k, a[0] - b[0]);
+    d.xyz.y.set(k, a[1] - b[1]);
+    d.xyz.z.set(k, a[2] - b[2]);
+    d.fourth.set(k, a[3] - b[3]);
   }
   return d;
 }
 
 inline RelativeMotion relative_motion(const double* velocity, const Offset* i, const Offset* j) {
   RelativeMotion m;
-  m.v = difference(velocity, i, j, 0);
+  m.v = difference(velocity, i, j, 0).xyz;
   for (int k = 0; k < Lanes::lanes; ++k) {
-    const double *a = at(velocity, 2 * std::size_t{i[k]}), *b = at(velocity, 2 * std::size_t{j[k]});
+    const double *a = row_at(velocity, 2 * std::size_t{i[k]}), *b = row_at(velocity, 2 * std::size_t{j[k]});
     m.size_difference.set(k, a[3] - b[3]);
     m.spin_sum.x.set(k, a[4] + b[4]);
     m.spin_sum.y.set(k, a[5] + b[5]);
@@ -224,8 +251,8 @@ inline void add_to_rows(double* force, const Offset* i, const Offset* j, const V
     row[6] += torque.z[k];
   };
   for (int k = 0; k < Lanes::lanes; ++k) {
-    add(at(force, 2 * std::size_t{i[k]}), 1, f, torque_i, k);
-    add(at(force, 2 * std::size_t{j[k]}), -1, f, torque_j, k);
+    add(row_at(force, 2 * std::size_t{i[k]}), 1, f, torque_i, k);
+    add(row_at(force, 2 * std::size_t{j[k]}), -1, f, torque_j, k);
   }
 }
 

@@ -1,0 +1,222 @@
+#include "dem/fast/engine.hpp"
+
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "dem/forces.hpp"
+#include "dem/neighbours.hpp"
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace bagnold::dem::fast {
+
+namespace {
+
+using HalfRegister = double __attribute__((vector_size(32), may_alias));
+
+// Kick and drift of the grains in rows [begin, end): v += kick (F/m + g), x += dt v. Forces start again at 0.
+// Returns a bound on their acceleration.
+double move_rows(Rows& rows, std::size_t begin, std::size_t end, const Vec3& gravity, double kick, double dt) {
+  const Register g{gravity.x, gravity.y, gravity.z, 0, 0, 0, 0, 0};
+  const Register kick_all{kick, kick, kick, 0, kick, kick, kick, 0};  // 0: radius and 1/m stay
+  const HalfRegister drift{dt, dt, dt, 0};
+  Register largest{};
+  for (std::size_t k = begin; k < end; ++k) {
+    auto& force = *reinterpret_cast<Register*>(&rows.force[force_doubles * k]);
+    auto& velocity = *reinterpret_cast<Register*>(&rows.velocity[velocity_doubles * k]);
+    auto& position = *reinterpret_cast<HalfRegister*>(&rows.position[position_doubles * k]);
+    const Register inverse_inertia = __builtin_shufflevector(force, force, 3, 3, 3, 3, 7, 7, 7, 7);
+    const Register acceleration = force * inverse_inertia + g;
+    const Register v = acceleration * kick_all + velocity;
+    velocity = v;
+    position = __builtin_shufflevector(v, v, 0, 1, 2, 3) * drift + position;
+    force = __builtin_shufflevector(force, Register{}, 8, 8, 8, 3, 8, 8, 8, 7);
+    largest = bagnold::detail::most(bagnold::detail::magnitude(acceleration), largest);
+  }
+  return std::sqrt(largest[0] * largest[0] + largest[1] * largest[1] + largest[2] * largest[2]);
+}
+
+// History of the new inner list from the old one: `place` maps outer pairs to where their numbers were.
+void carry_history(Engine& engine, Section& section, Scratch& scratch) {
+  const std::size_t numbers = engine.history_numbers;
+  constexpr std::uint32_t nowhere = 0xffffffff;
+  Selection& next = scratch.inner;
+  const std::size_t old_padded = (section.inner.count + batch - 1) / batch * batch;
+  const std::size_t new_padded = (next.count + batch - 1) / batch * batch;
+  const auto zeros = static_cast<std::uint32_t>(old_padded * numbers);
+  if (scratch.history.size() < (new_padded + 8) * numbers) scratch.history.resize((new_padded + new_padded / 4 + 24) * numbers);
+  std::fill_n(section.history.begin() + zeros, 8 * numbers, 0.0);
+
+  if (scratch.place.size() < section.outer_count + 1) scratch.place.assign(section.outer_count + section.outer_count / 4 + 16, nowhere);
+  std::uint32_t* place = scratch.place.data();
+  for (std::size_t k = 0; k < section.inner.count; ++k)
+    place[section.inner.key[k]] = static_cast<std::uint32_t>((k / 8 * numbers) * 8 + k % 8);
+  for (std::size_t k = 0; k < new_padded; k += 8) {
+    alignas(32) std::uint32_t from[8];
+    for (std::size_t l = 0; l < 8; ++l) from[l] = std::min(place[next.key[k + l]], zeros);
+    for (std::size_t c = 0; c < numbers; ++c)
+      gather(section.history.data() + 8 * c, from).store(&scratch.history[k * numbers + 8 * c]);
+  }
+  for (std::size_t k = 0; k < section.inner.count; ++k) place[section.inner.key[k]] = nowhere;
+}
+
+// An economical margin: what `steps` steps of the present accelerations would use up, and half as much again.
+double margin_for(const Engine& engine, std::size_t a, int steps) {
+  const Slab &left = engine.slabs[a], &right = engine.slabs[static_cast<std::size_t>(engine.ring.wrap(static_cast<int>(a) + 1))];
+  const double used = Drift{}.after(steps, engine.dt, left.acceleration + right.acceleration);
+  return std::max(1.5 * used, 1e-9 * engine.skin);
+}
+
+}  // namespace
+
+void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
+  Section& section = engine.sections[a];
+  const auto pads = engine.slabs[a].end;
+  const Offset pad_i = offset_of(pads), pad_j = offset_of(pads + 1);
+  if (!section.mid_valid.holds()) {
+    const double margin = margin_for(engine, a, mid_steps);
+    const PairSpan outer{&engine.outer_i[section.outer_begin], &engine.outer_j[section.outer_begin], nullptr, section.outer_count};
+    select(engine.rows, engine.images, outer, mid_steps * engine.dt, margin, section.mid);
+    section.mid.pad(8, pad_i, pad_j, 0);
+    section.mid_valid.renew(mid_steps, margin);
+  }
+  const double margin = margin_for(engine, a, inner_steps);
+  select(engine.rows, engine.images, section.mid.span(), inner_steps * engine.dt, margin, scratch.inner);
+  scratch.inner.pad(batch, pad_i, pad_j, static_cast<std::uint32_t>(section.outer_count));
+  section.inner_valid.renew(inner_steps, margin);
+  carry_history(engine, section, scratch);
+  std::swap(section.inner, scratch.inner);
+  std::swap(section.history, scratch.history);
+  if (engine.one_kind) return;
+  section.kind.resize(section.inner.i.size());
+  const auto kinds = static_cast<std::uint32_t>(engine.laws.species);
+  for (std::size_t k = 0; k < (section.inner.count + batch - 1) / batch * batch; ++k)
+    section.kind[k] = (static_cast<std::uint32_t>(engine.species[row_of(section.inner.i[k])]) * kinds +
+                       static_cast<std::uint32_t>(engine.species[row_of(section.inner.j[k])])) *
+                      static_cast<std::uint32_t>(engine.constant_numbers);
+}
+
+namespace {
+
+template <class K, class Tables>
+void pass(Engine& engine, const Tables& tables, int from, int to) {
+  const KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
+  const auto move = [&](int s, int t) {
+    Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
+    const double kick = engine.step + t - from == 0 ? 0.5 * engine.dt : engine.dt;  // the first step closes no other
+    slab.acceleration = move_rows(engine.rows, slab.begin, slab.moving_end, engine.gravity, kick, engine.dt);
+    slab.drift.step(engine.dt, slab.acceleration);
+    --slab.steps_left;
+  };
+  const auto act = [&](int s, int) {
+    const auto a = static_cast<std::size_t>(s), b = static_cast<std::size_t>(engine.ring.wrap(s + 1));
+    Section& section = engine.sections[a];
+    Scratch& scratch = engine.scratch[static_cast<std::size_t>(omp_get_thread_num())];
+    section.mid_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
+    section.inner_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
+    if (!section.mid_valid.holds() || !section.inner_valid.holds()) refresh(engine, a, scratch);
+    const Batches pairs{section.inner.i.data(), section.inner.j.data(), section.kind.data(), section.history.data(),
+                        section.inner.count};
+    scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input));
+  };
+  sweep(engine.ring, from, to, engine.grain.size() >= 500, move, act);
+}
+
+// Steps [from, to) of an epoch with the kernel for the laws and sizes at hand.
+void pass(Engine& engine, int from, int to) {
+  with_laws(engine.laws, [&](const auto& tables) {
+    using T = std::decay_t<decltype(tables)>;
+    if (!engine.one_kind) return pass<Kernel<T, false, false>>(engine, tables, from, to);
+    if (!engine.equal_radii) return pass<Kernel<T, false, true>>(engine, tables, from, to);
+    return pass<Kernel<T, true, true>>(engine, tables, from, to);
+  });
+}
+
+// Whether the outer list is sure to hold for the next epoch.
+bool holds(const Engine& engine, const Slab& slab) {
+  return slab.steps_left >= engine.ring.levels &&
+         slab.excursion + slab.drift.after(engine.ring.levels, engine.dt, 2 * slab.acceleration) <= 0.499 * engine.skin;
+}
+
+double excursion(const Engine& engine, const Slab& slab, double horizon) {
+  const Vec3 path = static_cast<double>(engine.step - engine.built_at) * engine.dt * engine.frame;
+  const double moving = largest_excursion(engine.rows, engine.start, slab.begin, slab.moving_end, path, engine.frame, horizon);
+  return slab.moving_end == slab.end ? moving : std::max(moving, norm(path + horizon * engine.frame));  // fixed grains
+}
+
+}  // namespace
+
+bool audit(Engine& engine) {
+  bool all_hold = true;
+#pragma omp parallel for schedule(static) reduction(&& : all_hold) if (engine.grain.size() >= 500)
+  for (std::size_t s = 0; s < engine.slabs.size(); ++s) {
+    Slab& slab = engine.slabs[s];
+    for (const int steps : {mid_steps, engine.ring.levels}) {
+      if (holds(engine, slab)) break;
+      slab.excursion = excursion(engine, slab, steps * engine.dt);
+      slab.drift = {};
+      slab.steps_left = steps;
+    }
+    all_hold = all_hold && holds(engine, slab);
+  }
+  return all_hold;
+}
+
+namespace {
+
+// What a pass may have met that a result must not be built on.
+void check(Engine& engine, DemState& state) {
+  for (const Slab& slab : engine.slabs)
+    if (!(slab.excursion + slab.drift.distance <= 0.5 * engine.skin)) {
+      store(engine, state);
+      check_motion(state);
+      throw NumericalError(fmt::format("step {} (t = {:g}): a grain was thrown {:g} out of its path within {} steps; the step is too "
+                                       "long for these forces", state.step, state.time(), slab.drift.distance, engine.ring.levels));
+    }
+  double excess = 0;
+  for (const Scratch& scratch : engine.scratch) excess = std::max(excess, scratch.excess);
+  if (excess > 0) {
+    store(engine, state);
+    report_overlap(state);
+  }
+}
+
+void rebuild(Engine& engine, DemState& state) {
+  store(engine, state);
+  state.pairs.origin.clear();
+  ++state.rebuilds;
+  load(engine, state, ContactLaws(engine.laws));
+}
+
+}  // namespace
+
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps) {
+  if (!state.engine.held || !matches(*std::static_pointer_cast<Engine>(state.engine.held), state, laws)) {
+    auto fresh = std::make_shared<Engine>();
+    load(*fresh, state, laws);
+    state.engine.held = std::move(fresh);
+  }
+  Engine& engine = *std::static_pointer_cast<Engine>(state.engine.held);
+  engine.scratch.resize(std::max(engine.scratch.size(), static_cast<std::size_t>(threads())));
+  for (const std::int64_t end = state.step + steps; engine.step < end;) {
+    int level = static_cast<int>(engine.step % engine.ring.levels);
+    if (level == 0 && !audit(engine)) {
+      rebuild(engine, state);
+      level = static_cast<int>(engine.step % engine.ring.levels);
+    }
+    const auto count = static_cast<int>(std::min<std::int64_t>(engine.ring.levels - level, end - engine.step));
+    pass(engine, level, level + count);
+    engine.step += count;
+    check(engine, state);
+  }
+  store(engine, state);
+}
+
+}  // namespace bagnold::dem::fast

@@ -1,0 +1,96 @@
+// The fast engine: the same trajectory as the plain one (dem/algorithm.cpp) to round-off, from a sorted copy of the
+// grains, three levels of lists (lists.hpp), forces of sixteen pairs at a time (kernel.hpp) and several steps per pass
+// over memory (sweep.hpp). It lives as long as the state is advanced by it and nobody else changes the state; all it
+// holds follows from the state, so that a resumed run makes the same bits.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dem/contact_model.hpp"
+#include "dem/fast/kernel.hpp"
+#include "dem/fast/lists.hpp"
+#include "dem/fast/sweep.hpp"
+#include "dem/state.hpp"
+
+namespace bagnold::dem::fast {
+
+// How many steps each list is made for; how many a pass takes.
+inline constexpr int mid_steps = 32, inner_steps = 4, steps_per_pass = 4;
+
+struct Slab {
+  std::size_t begin = 0, moving_end = 0, end = 0;  // rows: flowing, then fixed grains, then two that never touch
+  double acceleration = 0;                         // largest at the last step
+  // Excursion from the start of the outer list is at most excursion + drift.distance for `steps_left` more steps.
+  double excursion = 0;
+  Drift drift;
+  std::int64_t steps_left = 0;
+};
+
+struct Section {
+  std::size_t outer_begin = 0, outer_count = 0;
+  Selection mid, inner;
+  Aligned<std::uint32_t> kind;  // of the inner list
+  Aligned<double> history;      // of the inner list, and a group of zeros behind
+  Validity mid_valid, inner_valid;
+};
+
+// What a thread needs to make a list.
+struct Scratch {
+  Selection inner;
+  Aligned<std::uint32_t> kind;
+  Aligned<double> history;
+  std::vector<std::uint32_t> place;  // by outer pair: where its history was
+  double excess = 0;
+};
+
+struct Engine {
+  ContactLaws laws;
+  Box box;
+  Vec3 gravity;
+  double dt = 0, overlap_ratio = 0, skin = 0;
+  std::int64_t step = 0;
+  bool equal_radii = true, one_kind = true;
+  std::size_t history_numbers = 3, constant_numbers = 0;
+  std::vector<double> constants;       // of the laws, by pair of species
+
+  Images images;
+  Ring ring;
+  Rows rows;
+  std::vector<std::int32_t> grain;     // of each row; -1: none
+  std::vector<std::int32_t> species;   // of each row
+  std::vector<std::size_t> row;        // of each grain
+  std::vector<Vec3> start;             // of each row: where it was when the outer list was made
+  Vec3 frame;                          // velocity relative to which excursions are measured
+  std::int64_t built_at = 0;           // step
+  std::vector<Slab> slabs;
+  std::vector<Section> sections;
+  Aligned<Offset> outer_i, outer_j;
+  std::vector<Scratch> scratch;        // by thread
+};
+
+// Below this the plain engine is as fast.
+inline constexpr std::int64_t fewest_grains = 64;
+
+// False when the plain engine must do it: energy ledger kept, walls, a few grains only, or a periodic box only a few
+// grains wide.
+bool supports(const DemState& state);
+
+// Whether `engine` still is the state it left behind.
+bool matches(const Engine& engine, const DemState& state, const ContactLaws& laws);
+
+// A new engine for the state. Continues from the lists the state remembers if another engine made them.
+void load(Engine& engine, DemState& state, const ContactLaws& laws);
+
+// Writes grains, touching pairs and the origin of the lists into the state.
+void store(const Engine& engine, DemState& state);
+
+// As dem::advance, for a state it supports.
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps);
+
+// Makes the lists of a section that no longer hold anew, at the present positions.
+void refresh(Engine& engine, std::size_t section, Scratch& scratch);
+
+// Whether the outer list is sure to hold for the next epoch; measures the excursions of slabs where that is not known.
+bool audit(Engine& engine);
+
+}  // namespace bagnold::dem::fast

@@ -1,0 +1,55 @@
+#include "dem/fast/lists.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace bagnold::dem::fast {
+
+void Selection::pad(std::size_t lanes, Offset pad_i, Offset pad_j, std::uint32_t pad_key) {
+  for (std::size_t k = count; k < (count + lanes - 1) / lanes * lanes; ++k) {
+    i[k] = pad_i;
+    j[k] = pad_j;
+    key[k] = pad_key;
+  }
+}
+
+void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin, Selection& out) {
+  const Lanes twice_horizon = 2 * horizon, zero = 0.0, extra = margin;
+  alignas(32) std::uint32_t key[8];
+  out.reserve(from.count);
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < from.count; p += 8) {
+    const Separation s = separation(rows.position.data(), from.i + p, from.j + p);
+    const Vec3Of<Lanes> r = fold(images, s.r);
+    const Vec3Of<Lanes> v = difference(rows.velocity.data(), from.i + p, from.j + p, 0).xyz;
+    const Lanes near = s.reach + extra;
+    std::uint32_t bits = to_integer(dot(r, r) + twice_horizon * min(dot(r, v), zero) < near * near);
+    if (from.count - p < 8) bits &= (1u << (from.count - p)) - 1;
+    if (from.key == nullptr)
+      for (std::uint32_t k = 0; k < 8; ++k) key[k] = static_cast<std::uint32_t>(p) + k;
+    compress(bits, from.i + p, &out.i[count]);
+    compress(bits, from.j + p, &out.j[count]);
+    count += static_cast<std::size_t>(compress(bits, from.key == nullptr ? key : from.key + p, &out.key[count]));
+  }
+  out.count = count;
+}
+
+double largest_excursion(const Rows& rows, const std::vector<Vec3>& start, std::size_t begin, std::size_t end,
+                         const Vec3& frame_path, const Vec3& frame_velocity, double horizon) {
+  double largest2 = 0;
+  bool finite = true;
+  for (std::size_t k = begin; k < end; ++k) {
+    const double *x = &rows.position[position_doubles * k], *v = &rows.velocity[velocity_doubles * k];
+    const Vec3 moved = Vec3{x[0], x[1], x[2]} - start[k] - frame_path;
+    const Vec3 later = moved + horizon * (Vec3{v[0], v[1], v[2]} - frame_velocity);
+    const double now2 = norm2(moved), later2 = norm2(later);
+    largest2 = std::max(largest2, std::max(now2, later2));
+    finite = finite && now2 + later2 < std::numeric_limits<double>::max();
+  }
+  return finite ? std::sqrt(largest2) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace bagnold::dem::fast

@@ -1,0 +1,61 @@
+// Several time steps in one pass over memory. Slabs lie in a ring; section a is slab a and its pairs with slab a + 1.
+//
+// Step t of slab a (move it) needs the forces of step t - 1 on it, from sections a - 1 and a; step t of section a (its
+// forces) needs slabs a and a + 1 moved by step t. So within a block of slabs [b, e) steps can run ahead of the rest
+// of the ring as a triangle that loses a slab at each end per step,
+//     rise:  step t moves slabs  b + t .. e - 1 - t   and acts in sections  b + t .. e - 2 - t,
+// and what is left open around the border e of two blocks is the triangle upside down,
+//     fall:  step t moves slabs  e - t .. e - 1 + t   and acts in sections  e - 1 - t .. e - 1 + t.
+// All rises are independent, then all falls are, if every block has at least 2 `levels` slabs: blocks are the units of
+// parallel work. Inside a rise step t follows step t - 1 at a distance of one slab, so that a slab is in the cache from
+// its first step to its last.
+//
+// The order in which a slab receives the forces of its two sections depends on its place and on t alone. `levels`
+// divides time into epochs, t = step mod levels, and a pass may cover any part [from, to) of an epoch: neither threads
+// nor where a pass ends change a result.
+#pragma once
+
+namespace bagnold::dem::fast {
+
+struct Ring {
+  int slabs = 1, blocks = 1, levels = 1;
+  int block_begin(int k) const { return static_cast<int>(static_cast<long>(slabs) * k / blocks); }
+  int wrap(int a) const { return a < 0 ? a + slabs : a >= slabs ? a - slabs : a; }
+};
+
+// At most `levels` steps per pass, blocks of at least 16 slabs (or 2 * levels, to have two), an even number of them.
+inline Ring make_ring(int slabs, int levels) {
+  Ring ring{slabs, 1, levels};
+  while (ring.levels > 1 && slabs < 2 * ring.levels) --ring.levels;
+  if (slabs >= 4 * ring.levels && slabs >= 8) ring.blocks = slabs < 64 ? 2 : slabs / 32 * 2;
+  return ring;
+}
+
+// move(slab, t) and act(section, t) for every slab, section and t in [from, to), on all threads.
+template <class Move, class Act>
+void sweep(const Ring& ring, int from, int to, bool threads, Move&& move, Act&& act) {
+#pragma omp parallel if (threads && ring.blocks > 1)
+  {
+#pragma omp for schedule(static)
+    for (int k = 0; k < ring.blocks; ++k) {
+      const int b = ring.block_begin(k), e = ring.block_begin(k + 1);
+      for (int front = b + from; front <= e - 1 - from; ++front)
+        for (int t = from; t < to; ++t) {
+          const int a = front - (t - from);
+          if (a < b + t || a > e - 1 - t) continue;
+          move(a, t);
+          if (a > b + t) act(a - 1, t);
+        }
+    }
+#pragma omp for schedule(static)
+    for (int k = 0; k < ring.blocks; ++k) {
+      const int e = ring.block_begin(k + 1);
+      for (int t = from; t < to; ++t) {
+        for (int a = e - t; a <= e - 1 + t; ++a) move(ring.wrap(a), t);
+        for (int a = e - 1 - t; a <= e - 1 + t; ++a) act(ring.wrap(a), t);
+      }
+    }
+  }
+}
+
+}  // namespace bagnold::dem::fast
