@@ -32,7 +32,7 @@ dem::ContactLaws chute_laws() {
   return dem::compile(dem::uniform_model({"grain"}, {normal, laws::LinearHistory{}, laws::NoRollingResistance{}}), 0.5);
 }
 
-// 4 000 grains over 200 fixed ones, sheared from a lattice for a few time units.
+// 4 000 grains over a dense layer of fixed ones, sheared from a lattice for a few time units.
 dem::DemState flow(const dem::ContactLaws& laws) {
   dem::DemState s;
   s.box = {{0, 0, 0}, {20, 10, 1}, {true, true, false}};
@@ -41,12 +41,13 @@ dem::DemState flow(const dem::ContactLaws& laws) {
   s.reorder_every = 2000;
   std::uint64_t item = 0;
   for (int k = 0; k <= 20; ++k)
-    for (int j = 0; j < 10; ++j)
-      for (int i = 0; i < 20; ++i, ++item) {
+    for (int j = 0; j < (k < 20 ? 10 : 15); ++j)
+      for (int i = 0; i < (k < 20 ? 20 : 30); ++i, ++item) {
         const auto u = [&](std::uint32_t draw) { return random::uniform(2, random::Stream::perturbation, item, draw) - 0.5; };
         const bool fixed = k == 20;
         const double z = fixed ? 0 : k + 1;
-        s.grains.x.push_back({i + 0.04 * u(0), j + 0.04 * u(1), z + (fixed ? 0.4 : 0.04) * u(2)});
+        const double spacing = fixed ? 2.0 / 3 : 1;
+        s.grains.x.push_back({spacing * i + 0.04 * u(0), spacing * j + 0.04 * u(1), z + (fixed ? 0.2 : 0.04) * u(2)});
         s.grains.v.push_back(fixed ? Vec3{} : Vec3{0.25 * z + 0.5 * u(3), 0.5 * u(4), 0.5 * u(5)});
         s.grains.omega.push_back({});
         s.grains.diameter.push_back(1);

@@ -32,7 +32,7 @@ Place place(const ProfileMoments& p, double z, double per_bin) {
 // Makes sure that bin b exists. Grows by some more than asked, so that it happens rarely.
 void cover(BinMoments& m, std::int64_t b, double z) {
   if (b >= m.first && b < m.first + m.count) return;
-  const std::int64_t spare = 16;
+  const std::int64_t spare = std::max<std::int64_t>(16, m.count / 8);
   const std::int64_t lo = m.count == 0 ? b - spare : std::min(m.first, b - spare);
   const std::int64_t hi = m.count == 0 ? b + spare + 1 : std::max(m.first + m.count, b + spare + 1);
   if (hi - lo > most_bins)
@@ -125,15 +125,16 @@ void gather_contacts(ProfileMoments& p, const Snapshot& s, std::vector<double>& 
   }
 }
 
-// Sorts grains [begin, begin + n) by bin (stable, so sums are taken in the order of the grains).
-void sort_by_bin(const ProfileMoments& p, const Snapshot& s, ProfileScratch& w, std::size_t begin, std::size_t n) {
+// Sorts the flowing grains by bin (stable, so sums are taken in the order of the grains).
+void sort_by_bin(const ProfileMoments& p, const Snapshot& s, ProfileScratch& w) {
   const double per_bin = 1 / p.lattice.bin();
+  const auto n = static_cast<std::size_t>(s.flowing);
   w.bin.resize(n);
   w.delta.resize(n);
   w.order.resize(n);
   w.begin.assign(static_cast<std::size_t>(p.flow.count) + 1, 0);
   for (std::size_t i = 0; i < n; ++i) {
-    const Place at = place(p, s.x[begin + i].z, per_bin);
+    const Place at = place(p, s.x[i].z, per_bin);
     w.bin[i] = static_cast<std::int32_t>(at.bin - p.flow.first);
     w.delta[i] = at.delta;
     ++w.begin[static_cast<std::size_t>(w.bin[i]) + 1];
@@ -147,16 +148,35 @@ void sort_by_bin(const ProfileMoments& p, const Snapshot& s, ProfileScratch& w, 
 // Eight channels at once; the compiler maps it to the vectors of the machine.
 using Lanes = double __attribute__((vector_size(64), aligned(8), may_alias));
 
-// Adds all grains of one bin, eight channels at a time, so that their moments stay in registers.
+// Grains of one bin, a few at a time: what they carry and their powers (-delta)^k/k!. Small enough for the first-level cache.
+struct Batch {
+  static constexpr std::size_t most = 16;
+  alignas(64) std::array<std::array<double, flow_width>, most> carried;
+  alignas(64) std::array<std::array<double, 8>, most> powers;
+};
+
+void fill(Batch& batch, const Snapshot& s, const ProfileScratch& w, std::size_t begin, std::size_t n) {
+  for (std::size_t g = 0; g < n; ++g) {
+    const auto i = static_cast<std::size_t>(w.order[begin + g]);
+    double* __restrict q = batch.carried[g].data();
+    const double* __restrict from_contacts = w.of_contacts.data() + contact_row * i;
+    carried_by_grain(q, s, i, from_contacts + 9);
+    for (std::size_t k = 0; k < 9; ++k) q[kContact + k] = from_contacts[k];
+    const double d = w.delta[i], d2 = d * d, d3 = d2 * d, d4 = d2 * d2;
+    batch.powers[g] = {1, -d, d2 / 2, -d3 / 6, d4 / 24, -d4 * d / 120, d4 * d2 / 720, -d4 * d3 / 5040};
+  }
+}
+
+// Adds a batch to its bin, eight channels at a time, so that their moments stay in registers.
 template <int terms>
-void deposit_bin(double* __restrict bin, const ProfileScratch& w, std::size_t begin, std::size_t end) {
+void deposit_batch(double* __restrict bin, const Batch& batch, std::size_t n) {
   for (std::int64_t c = 0; c < flow_width; c += 8) {
     Lanes sum[terms];
 #pragma GCC unroll 8
     for (int k = 0; k < terms; ++k) sum[k] = *reinterpret_cast<const Lanes*>(bin + k * flow_width + c);
-    for (std::size_t g = begin; g < end; ++g) {
-      const Lanes q = *reinterpret_cast<const Lanes*>(w.carried.data() + g * flow_width + static_cast<std::size_t>(c));
-      const double* power = w.powers.data() + g * 8;
+    for (std::size_t g = 0; g < n; ++g) {
+      const Lanes q = *reinterpret_cast<const Lanes*>(batch.carried[g].data() + c);
+      const double* power = batch.powers[g].data();
 #pragma GCC unroll 8
       for (int k = 0; k < terms; ++k) sum[k] += power[k] * q;
     }
@@ -165,38 +185,21 @@ void deposit_bin(double* __restrict bin, const ProfileScratch& w, std::size_t be
   }
 }
 
-// Adds grains [begin, begin + n): what they carry and their share of the contact stress.
-template <int terms>
-void deposit_grains(ProfileMoments& p, const Snapshot& s, ProfileScratch& w, std::size_t begin, std::size_t n) {
-  sort_by_bin(p, s, w, begin, n);
-  w.carried.resize(n * flow_width);
-  w.powers.resize(n * 8);
-  for (std::size_t g = 0; g < n; ++g) {
-    const auto in_chunk = static_cast<std::size_t>(w.order[g]);
-    const std::size_t i = begin + in_chunk;
-    double* __restrict q = w.carried.data() + g * flow_width;
-    const double* __restrict from_contacts = w.of_contacts.data() + contact_row * i;
-    carried_by_grain(q, s, i, from_contacts + 9);
-    for (std::size_t k = 0; k < 9; ++k) q[kContact + k] = from_contacts[k];
-    const double d = w.delta[in_chunk], d2 = d * d, d3 = d2 * d, d4 = d2 * d2;
-    const std::array<double, 8> power{1, -d, d2 / 2, -d3 / 6, d4 / 24, -d4 * d / 120, d4 * d2 / 720, -d4 * d3 / 5040};
-    std::copy(power.begin(), power.end(), w.powers.begin() + static_cast<std::ptrdiff_t>(8 * g));
-  }
-  for (std::size_t b = 0; b + 1 < w.begin.size(); ++b) {
-    const auto first = static_cast<std::size_t>(w.begin[b]), last = static_cast<std::size_t>(w.begin[b + 1]);
-    if (first < last) deposit_bin<terms>(p.flow.data.data() + b * terms * flow_width, w, first, last);
-  }
-}
-
 template <int terms>
 void add(ProfileMoments& p, const Snapshot& s, ProfileScratch& w, double level) {
-  constexpr std::size_t chunk = 2048;   // what a chunk carries fits in the second-level cache
   const double per_bin = 1 / p.lattice.bin();
   const auto n = static_cast<std::size_t>(s.flowing);
   w.of_contacts.assign(contact_row * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) cover(p.flow, place(p, s.x[i].z, per_bin).bin, s.x[i].z);
   gather_contacts<terms>(p, s, w.of_contacts, per_bin, level);
-  for (std::size_t begin = 0; begin < n; begin += chunk) deposit_grains<terms>(p, s, w, begin, std::min(chunk, n - begin));
+  sort_by_bin(p, s, w);
+  Batch batch;
+  for (std::size_t b = 0; b + 1 < w.begin.size(); ++b)
+    for (auto first = static_cast<std::size_t>(w.begin[b]); first < static_cast<std::size_t>(w.begin[b + 1]); first += Batch::most) {
+      const std::size_t count = std::min(Batch::most, static_cast<std::size_t>(w.begin[b + 1]) - first);
+      fill(batch, s, w, first, count);
+      deposit_batch<terms>(p.flow.data.data() + b * terms * flow_width, batch, count);
+    }
   p.contacts += static_cast<double>(s.contacts.size());
   ++p.samples;
 }

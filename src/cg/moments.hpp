@@ -58,7 +58,7 @@ struct ProfileMoments {
 struct ProfileScratch {
   std::vector<double> of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric
   std::vector<std::int32_t> bin, order, begin, next;   // grains sorted by bin
-  std::vector<double> delta, carried, powers;          // carried, powers: in that order
+  std::vector<double> delta;                           // of a grain, from the centre of its bin
 };
 
 ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& lattice, const Box& box);
