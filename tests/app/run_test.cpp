@@ -96,6 +96,8 @@ TEST(Run, InterruptedAndResumedIsTheUninterruptedRun) {
   ASSERT_EQ(rest.exit_code, 0) << rest.err;
   expect_same_state(scratch / "whole", scratch / "cut");
   EXPECT_TRUE(read_text(scratch / "whole" / "series.csv") == read_text(scratch / "cut" / "series.csv"));
+  for (const char* name : {"profile.csv", "widths.csv", "steadiness.csv"})  // averages go on where they were
+    EXPECT_TRUE(read_text(scratch / "whole" / name) == read_text(scratch / "cut" / name)) << name;
   EXPECT_TRUE(read_text(scratch / "whole" / "vtk" / "grains.pvd") == read_text(scratch / "cut" / "vtk" / "grains.pvd"));
 }
 
