@@ -9,7 +9,8 @@
 namespace bagnold {
 
 constexpr double select(bool mask, double if_true, double if_false) { return mask ? if_true : if_false; }
-constexpr bool any(bool mask) { return mask; }
+// Whether work that only matters where `mask` holds is to be done. Among the lanes of a pack it nearly always is.
+constexpr bool worthwhile(bool mask) { return mask; }
 constexpr double min(double a, double b) { return b < a ? b : a; }
 constexpr double max(double a, double b) { return a < b ? b : a; }
 inline double sqrt(double a) { return std::sqrt(a); }

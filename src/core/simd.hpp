@@ -1,6 +1,6 @@
 // A pack of numbers that behaves like one: the laws, written for any number type, run on it unchanged. Arithmetic is
 // the compiler's own vector type, which every x86-64 can execute; square roots, masks and gathers use AVX-512 or AVX2
-// where the build has them. A pack of two registers gives the processor two independent chains to interleave.
+// where the build has them.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -77,78 +77,41 @@ inline Register inverse_root(Register a) { return 1.0 / root(a); }
 
 }  // namespace detail
 
-template <int Registers>
 struct Mask {
-  detail::Bits m[Registers];
+  detail::Bits m;
 };
 
-template <int Registers>
+// Eight numbers.
 struct Pack {
-  static constexpr int lanes = Registers * register_lanes;
-  Register v[Registers];
+  static constexpr int lanes = register_lanes;
+  Register v;
 
   Pack() = default;
-  Pack(double a) {  // every lane
-    for (auto& r : v) r = Register{} + a;
-  }
-  static Pack load(const double* p) {  // aligned to 64 bytes
-    Pack a;
-    for (int u = 0; u < Registers; ++u) a.v[u] = *reinterpret_cast<const Register*>(p + u * register_lanes);
-    return a;
-  }
-  void store(double* p) const {
-    for (int u = 0; u < Registers; ++u) *reinterpret_cast<Register*>(p + u * register_lanes) = v[u];
-  }
-  double operator[](int lane) const { return v[lane / register_lanes][lane % register_lanes]; }
-  void set(int lane, double a) { v[lane / register_lanes][lane % register_lanes] = a; }
+  Pack(double a) : v(Register{} + a) {}  // every lane
+  explicit Pack(Register r) : v(r) {}
+  static Pack load(const double* p) { return Pack(*reinterpret_cast<const Register*>(p)); }  // aligned to 64 bytes
+  void store(double* p) const { *reinterpret_cast<Register*>(p) = v; }
+  double operator[](int lane) const { return v[lane]; }
+  void set(int lane, double a) { v[lane] = a; }
 
-  friend Pack operator+(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x + y; }); }
-  friend Pack operator-(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x - y; }); }
-  friend Pack operator*(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x * y; }); }
-  friend Pack operator/(const Pack& a, const Pack& b) { return each(a, b, [](Register x, Register y) { return x / y; }); }
-  friend Pack min(const Pack& a, const Pack& b) { return each(a, b, detail::least); }
-  friend Pack max(const Pack& a, const Pack& b) { return each(a, b, detail::most); }
-  friend Pack abs(const Pack& a) { return each(a, detail::magnitude); }
-  friend Pack sqrt(const Pack& a) { return each(a, detail::root); }
-  friend Pack rsqrt(const Pack& a) { return each(a, detail::inverse_root); }
-  friend Mask<Registers> operator<(const Pack& a, const Pack& b) {
-    Mask<Registers> r;
-    for (int u = 0; u < Registers; ++u) r.m[u] = detail::less(a.v[u], b.v[u]);
-    return r;
-  }
-  friend Mask<Registers> operator>(const Pack& a, const Pack& b) { return b < a; }
-  friend Pack select(const Mask<Registers>& m, const Pack& a, const Pack& b) {
-    Pack r;
-    for (int u = 0; u < Registers; ++u) r.v[u] = detail::blend(m.m[u], a.v[u], b.v[u]);
-    return r;
-  }
-
- private:
-  template <class F>
-  static Pack each(const Pack& a, F&& f) {
-    Pack r;
-    for (int u = 0; u < Registers; ++u) r.v[u] = f(a.v[u]);
-    return r;
-  }
-  template <class F>
-  static Pack each(const Pack& a, const Pack& b, F&& f) {
-    Pack r;
-    for (int u = 0; u < Registers; ++u) r.v[u] = f(a.v[u], b.v[u]);
-    return r;
-  }
+  friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.v + b.v); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.v - b.v); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.v * b.v); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
+  friend Pack min(const Pack& a, const Pack& b) { return Pack(detail::least(a.v, b.v)); }
+  friend Pack max(const Pack& a, const Pack& b) { return Pack(detail::most(a.v, b.v)); }
+  friend Pack abs(const Pack& a) { return Pack(detail::magnitude(a.v)); }
+  friend Pack sqrt(const Pack& a) { return Pack(detail::root(a.v)); }
+  friend Pack rsqrt(const Pack& a) { return Pack(detail::inverse_root(a.v)); }
+  friend Mask operator<(const Pack& a, const Pack& b) { return {detail::less(a.v, b.v)}; }
+  friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
+  friend Pack select(const Mask& m, const Pack& a, const Pack& b) { return Pack(detail::blend(m.m, a.v, b.v)); }
 };
 
 // Bit k is lane k.
-template <int Registers>
-std::uint32_t to_integer(const Mask<Registers>& m) {
-  std::uint32_t bits = 0;
-  for (int u = 0; u < Registers; ++u) bits |= detail::to_integer(m.m[u]) << (u * register_lanes);
-  return bits;
-}
-template <int Registers>
-bool any(const Mask<Registers>& m) {
-  return to_integer(m) != 0;
-}
+inline std::uint32_t to_integer(const Mask& m) { return detail::to_integer(m.m); }
+inline bool any(const Mask& m) { return to_integer(m) != 0; }
+constexpr bool worthwhile(const Mask&) { return true; }
 
 // Writes the numbers whose bit is set to the front of `out`, which has room for eight; returns how many.
 inline int compress(std::uint32_t bits, const std::uint32_t* in, std::uint32_t* out) {
@@ -163,10 +126,10 @@ inline int compress(std::uint32_t bits, const std::uint32_t* in, std::uint32_t* 
 }
 
 // base[index[k]] in lane k.
-inline Pack<1> gather(const double* base, const std::uint32_t* index) {
-  Pack<1> p;
+inline Pack gather(const double* base, const std::uint32_t* index) {
+  Pack p;
 #ifdef BAGNOLD_AVX512
-  p.v[0] = _mm512_mask_i32gather_pd(Register{}, 0xff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), base, 8);
+  p.v = _mm512_mask_i32gather_pd(Register{}, 0xff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), base, 8);
 #else
   for (int k = 0; k < register_lanes; ++k) p.set(k, base[index[k]]);
 #endif
@@ -174,9 +137,8 @@ inline Pack<1> gather(const double* base, const std::uint32_t* index) {
 }
 
 // The integer nearest to a, for |a| < 2^51: adding 1.5 * 2^52 leaves no room for a fraction.
-template <int Registers>
-Pack<Registers> nearest_integer(const Pack<Registers>& a) {
-  const Pack<Registers> magic = 6755399441055744.0;
+inline Pack nearest_integer(const Pack& a) {
+  const Pack magic = 6755399441055744.0;
   return (a + magic) - magic;
 }
 

@@ -67,11 +67,11 @@ void carry_history(Engine& engine, Section& section, Scratch& scratch) {
   for (std::size_t k = 0; k < section.inner.count; ++k) place[section.inner.key[k]] = nowhere;
 }
 
-// An economical margin: what `steps` steps of the present accelerations would use up, and half as much again.
+// An economical margin: what `steps` steps of the present accelerations would use up, and a quarter more.
 double margin_for(const Engine& engine, std::size_t a, int steps) {
   const Slab &left = engine.slabs[a], &right = engine.slabs[static_cast<std::size_t>(engine.ring.wrap(static_cast<int>(a) + 1))];
   const double used = Drift{}.after(steps, engine.dt, left.acceleration + right.acceleration);
-  return std::max(1.5 * used, 1e-9 * engine.skin);
+  return std::max(1.25 * used, 1e-9 * engine.skin);
 }
 
 }  // namespace

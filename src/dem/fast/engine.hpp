@@ -1,5 +1,5 @@
 // The fast engine: the same trajectory as the plain one (dem/algorithm.cpp) to round-off, from a sorted copy of the
-// grains, three levels of lists (lists.hpp), forces of sixteen pairs at a time (kernel.hpp) and several steps per pass
+// grains, three levels of lists (lists.hpp), forces of eight pairs at a time (kernel.hpp) and several steps per pass
 // over memory (sweep.hpp). It lives as long as the state is advanced by it and nobody else changes the state; all it
 // holds follows from the state, so that a resumed run makes the same bits.
 #pragma once
@@ -15,7 +15,7 @@
 namespace bagnold::dem::fast {
 
 // How many steps each list is made for; how many a pass takes.
-inline constexpr int mid_steps = 32, inner_steps = 4, steps_per_pass = 4;
+inline constexpr int mid_steps = 48, inner_steps = 4, steps_per_pass = 4;
 
 struct Slab {
   std::size_t begin = 0, moving_end = 0, end = 0;  // rows: flowing, then fixed grains, then two that never touch

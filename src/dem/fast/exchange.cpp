@@ -21,7 +21,7 @@ namespace {
 
 double largest_diameter(const Grains& g) { return *std::max_element(g.diameter.begin(), g.diameter.end()); }
 
-double skin_of(const Grains& g) { return 0.2 * *std::min_element(g.diameter.begin(), g.diameter.begin() + g.flowing); }
+double skin_of(const Grains& g) { return 0.24 * *std::min_element(g.diameter.begin(), g.diameter.begin() + g.flowing); }
 
 void choose_kernel(Engine& engine, const Grains& g) {
   engine.equal_radii = std::all_of(g.diameter.begin(), g.diameter.end(), [&](double d) { return d == g.diameter[0]; });

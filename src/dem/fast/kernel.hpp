@@ -1,4 +1,4 @@
-// Forces of sixteen pairs at a time, through the pair law of laws/contact/pair.hpp and nothing else: here rows become
+// Forces of eight pairs at a time, through the pair law of laws/contact/pair.hpp and nothing else: here rows become
 // packs, the law acts on every pair of the list as if it touched, and masks drop what pairs apart would do.
 #pragma once
 #include <cstring>
@@ -12,18 +12,17 @@
 
 namespace bagnold::dem::fast {
 
-using Sixteen = Pack<2>;
-inline constexpr std::size_t batch = Sixteen::lanes;
+inline constexpr std::size_t batch = Lanes::lanes;
 
 // Packs the constants of a law from an array of its numbers, from `numbers` on: a law is a bundle of numbers, an empty
 // type if it has none. source(c): number c of the pairs' laws in every lane.
 template <template <class> class Law, class Source>
-Law<Sixteen> pack_law(const Law<double>*, std::size_t& first, Source&& source) {
-  Law<Sixteen> packed{};
+Law<Lanes> pack_law(const Law<double>*, std::size_t& first, Source&& source) {
+  Law<Lanes> packed{};
   if constexpr (!std::is_empty_v<Law<double>>) {
     constexpr std::size_t numbers = sizeof(Law<double>) / sizeof(double);
-    static_assert(sizeof(packed) == numbers * sizeof(Sixteen));
-    Sixteen values[numbers];
+    static_assert(sizeof(packed) == numbers * sizeof(Lanes));
+    Lanes values[numbers];
     for (std::size_t c = 0; c < numbers; ++c) values[c] = source(first + c);
     std::memcpy(&packed, values, sizeof packed);
     first += numbers;
@@ -81,55 +80,33 @@ struct Kernel {
   static constexpr bool rolls = std::remove_pointer_t<decltype(Tables::rolling)>::active;
   static constexpr bool symmetric = EqualRadii && !rolls;  // the torques on i and j are the same
   static constexpr std::size_t history_numbers = rolls ? 6 : 3;
-  using Motion = laws::PairMotion<Sixteen, EqualRadii>;
-  using Size = laws::PairSize<Sixteen>;
-  using History = laws::PairHistory<Sixteen>;
+  using Motion = laws::PairMotion<Lanes, EqualRadii>;
+  using Size = laws::PairSize<Lanes>;
+  using History = laws::PairHistory<Lanes>;
 
-  static void put(Vec3Of<Sixteen>& to, int u, const Vec3Of<Lanes>& from) {
-    to.x.v[u] = from.x.v[0];
-    to.y.v[u] = from.y.v[0];
-    to.z.v[u] = from.z.v[0];
-  }
-  static Vec3Of<Lanes> part(const Vec3Of<Sixteen>& from, int u) {
-    Vec3Of<Lanes> to;
-    to.x.v[0] = from.x.v[u];
-    to.y.v[0] = from.y.v[u];
-    to.z.v[0] = from.z.v[u];
-    return to;
-  }
-
-  static Size sizes(const Motion& m, const Sixteen& inverse_mass, const Sixteen& mass_difference) {
+  static Size sizes(const Motion& m, const Lanes& inverse_mass, const Lanes& mass_difference) {
     Size size{};
     size.inverse_reduced_mass = inverse_mass;
     if constexpr (EqualRadii)
-      size.reduced_radius = Sixteen(0.25) * m.reach;
+      size.reduced_radius = Lanes(0.25) * m.reach;
     else
-      size.reduced_radius = (m.reach * m.reach - m.size_difference * m.size_difference) / (Sixteen(4) * m.reach);
+      size.reduced_radius = (m.reach * m.reach - m.size_difference * m.size_difference) / (Lanes(4) * m.reach);
     if constexpr (rolls) {
-      size.inverse_radius_i = Sixteen(2) / (m.reach + m.size_difference);
-      size.inverse_radius_j = Sixteen(2) / (m.reach - m.size_difference);
-      size.inverse_mass_i = Sixteen(0.5) * (inverse_mass + mass_difference);
-      size.inverse_mass_j = Sixteen(0.5) * (inverse_mass - mass_difference);
+      size.inverse_radius_i = Lanes(2) / (m.reach + m.size_difference);
+      size.inverse_radius_j = Lanes(2) / (m.reach - m.size_difference);
+      size.inverse_mass_i = Lanes(0.5) * (inverse_mass + mass_difference);
+      size.inverse_mass_j = Lanes(0.5) * (inverse_mass - mass_difference);
     }
     return size;
   }
 
-  static History load(const double* memory) {
-    History h{};
-    for (int u = 0; u < 2; ++u, memory += 8 * history_numbers) {
-      put(h.spring, u, {Lanes::load(memory), Lanes::load(memory + 8), Lanes::load(memory + 16)});
-      if constexpr (rolls) put(h.roll, u, {Lanes::load(memory + 24), Lanes::load(memory + 32), Lanes::load(memory + 40)});
-    }
-    return h;
+  static Vec3Of<Lanes> load(const double* memory) {
+    return {Lanes::load(memory), Lanes::load(memory + 8), Lanes::load(memory + 16)};
   }
-  static void store(const Vec3Of<Sixteen>& a, double* memory) {
-    for (int u = 0; u < 2; ++u) {
-      const Vec3Of<Lanes> lanes = part(a, u);
-      double* to = memory + static_cast<std::size_t>(u) * 8 * history_numbers;
-      lanes.x.store(to);
-      lanes.y.store(to + 8);
-      lanes.z.store(to + 16);
-    }
+  static void store(const Vec3Of<Lanes>& a, double* memory) {
+    a.x.store(memory);
+    a.y.store(memory + 8);
+    a.z.store(memory + 16);
   }
 
   // Adds what the pairs do to the force rows, moves their history on by dt. Returns by how much the largest overlap
@@ -137,59 +114,46 @@ struct Kernel {
   [[gnu::flatten]] static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input) {
     const double *position = rows.position.data(), *velocity = rows.velocity.data();
     double* force_rows = rows.force.data();
-    const Sixteen zero = 0.0, dt = input.dt;
-    const Vec3Of<Sixteen> nothing{zero, zero, zero};
-    auto law = pack_laws(tables, [&](std::size_t c) { return Sixteen(input.constants[c]); });
-    Sixteen excess = -1.0;
+    const Lanes zero = 0.0, dt = input.dt;
+    const Vec3Of<Lanes> nothing{zero, zero, zero};
+    auto law = pack_laws(tables, [&](std::size_t c) { return Lanes(input.constants[c]); });
+    Lanes excess = -1.0;
 
     for (std::size_t p = 0; p < pairs.count; p += batch) {
       const Offset *i = pairs.i + p, *j = pairs.j + p;
       double* memory = pairs.history + p * history_numbers;
-      Motion m;
-      Sixteen inverse_mass, mass_difference = zero;
-      m.turns = 1.0;
-      for (int u = 0; u < 2; ++u) {
-        const Separation s = separation(position, i + 8 * u, j + 8 * u);
-        const RelativeMotion w = relative_motion(velocity, i + 8 * u, j + 8 * u);
-        put(m.r, u, fold(input.images, s.r));
-        put(m.v, u, w.v);
-        put(m.spin_sum, u, w.spin_sum);
-        m.reach.v[u] = s.reach.v[0];
-        m.size_difference.v[u] = w.size_difference.v[0];
-        inverse_mass.v[u] = w.inverse_mass.v[0];
-        if constexpr (!symmetric) {
-          const RowDifference d = difference(velocity, i + 8 * u, j + 8 * u, 4);
-          put(m.spin_difference, u, d.xyz);
-          mass_difference.v[u] = d.fourth.v[0];
-        }
+      const Separation apart = separation(position, i, j);
+      const RelativeMotion moving = relative_motion(velocity, i, j);
+      Motion m{fold(input.images, apart.r), moving.v, moving.spin_sum, nothing, apart.reach, moving.size_difference, 1.0};
+      Lanes mass_difference = zero;
+      if constexpr (!symmetric) {
+        const RowDifference d = difference(velocity, i, j, 4);
+        m.spin_difference = d.xyz;
+        mass_difference = d.fourth;
       }
-      if constexpr (symmetric) m.spin_difference = nothing;
       if constexpr (!OneKind)
         law = pack_laws(tables, [&](std::size_t c) {
-          Sixteen values;
-          for (int u = 0; u < 2; ++u) values.v[u] = gather(input.constants + c, pairs.kind + p + 8 * u).v[0];
-          return values;
+          return gather(input.constants + c, pairs.kind + p);
         });
 
       const auto geometry = laws::pair_geometry(m);
-      History history = load(memory);
-      const auto force = laws::interact<true>(law, geometry, sizes(m, inverse_mass, mass_difference), dt, history);
+      History history{load(memory), nothing};
+      if constexpr (rolls) history.roll = load(memory + 24);
+      const auto force = laws::interact<true>(law, geometry, sizes(m, moving.inverse_mass, mass_difference), dt, history);
       const auto touching = geometry.overlap > zero;
       store(select(touching, history.spring, nothing), memory);
       if constexpr (rolls) store(select(touching, history.roll, nothing), memory + 24);
 
-      const Sixteen smaller = EqualRadii ? m.reach : m.reach - abs(m.size_difference);  // twice the smaller radius
-      excess = max(excess, geometry.overlap - Sixteen(0.5 * input.overlap_ratio) * smaller);
+      const Lanes smaller = EqualRadii ? m.reach : m.reach - abs(m.size_difference);  // twice the smaller radius
+      excess = max(excess, geometry.overlap - Lanes(0.5 * input.overlap_ratio) * smaller);
       const auto on_i = select(touching, force.force, nothing), torque_i = select(touching, force.torque_i, nothing);
-      const auto torque_j = select(touching, force.torque_j, nothing);
-      for (int u = 0; u < 2; ++u)
-        if constexpr (symmetric)
-          add_to_rows(force_rows, i + 8 * u, j + 8 * u, part(on_i, u), part(torque_i, u));
-        else
-          add_to_rows(force_rows, i + 8 * u, j + 8 * u, part(on_i, u), part(torque_i, u), part(torque_j, u));
+      if constexpr (symmetric)
+        add_to_rows(force_rows, i, j, on_i, torque_i);
+      else
+        add_to_rows(force_rows, i, j, on_i, torque_i, select(touching, force.torque_j, nothing));
     }
     double largest = excess[0];
-    for (int k = 1; k < Sixteen::lanes; ++k) largest = excess[k] > largest ? excess[k] : largest;
+    for (int k = 1; k < Lanes::lanes; ++k) largest = excess[k] > largest ? excess[k] : largest;
     return largest;
   }
 };

@@ -22,7 +22,7 @@
 
 namespace bagnold::dem::fast {
 
-using Lanes = Pack<1>;
+using Lanes = Pack;
 
 // Memory that starts at a cache line.
 template <class T>
@@ -127,10 +127,10 @@ inline Separation separation(const double* position, const Offset* i, const Offs
              detail::halves(row_at(position, i[k]), row_at(position, i[k + 4]));
   detail::transpose4(row, out);
   Separation s;
-  s.r.x.v[0] = out[0];
-  s.r.y.v[0] = out[1];
-  s.r.z.v[0] = out[2];
-  s.reach.v[0] = out[3];
+  s.r.x.v = out[0];
+  s.r.y.v = out[1];
+  s.r.z.v = out[2];
+  s.reach.v = out[3];
   return s;
 }
 
@@ -141,14 +141,14 @@ inline RelativeMotion relative_motion(const double* velocity, const Offset* i, c
              _mm512_load_pd(row_at(velocity, 2 * std::size_t{i[k]}));
   detail::transpose8(row, out);
   RelativeMotion m;
-  m.v.x.v[0] = out[0];
-  m.v.y.v[0] = out[1];
-  m.v.z.v[0] = out[2];
-  m.size_difference.v[0] = out[3];
-  m.spin_sum.x.v[0] = out[4];
-  m.spin_sum.y.v[0] = out[5];
-  m.spin_sum.z.v[0] = out[6];
-  m.inverse_mass.v[0] = out[7];
+  m.v.x.v = out[0];
+  m.v.y.v = out[1];
+  m.v.z.v = out[2];
+  m.size_difference.v = out[3];
+  m.spin_sum.x.v = out[4];
+  m.spin_sum.y.v = out[5];
+  m.spin_sum.z.v = out[6];
+  m.inverse_mass.v = out[7];
   return m;
 }
 
@@ -161,10 +161,10 @@ inline RowDifference difference(const double* velocity, const Offset* i, const O
   for (int k = 0; k < 4; ++k) row[k] = half(i, k) - half(j, k);
   detail::transpose4(row, out);
   RowDifference d;
-  d.xyz.x.v[0] = out[0];
-  d.xyz.y.v[0] = out[1];
-  d.xyz.z.v[0] = out[2];
-  d.fourth.v[0] = out[3];
+  d.xyz.x.v = out[0];
+  d.xyz.y.v = out[1];
+  d.xyz.z.v = out[2];
+  d.fourth.v = out[3];
   return d;
 }
 
@@ -172,7 +172,7 @@ inline RowDifference difference(const double* velocity, const Offset* i, const O
 inline void add_to_rows(double* force, const Offset* i, const Offset* j, const Vec3Of<Lanes>& f,
                         const Vec3Of<Lanes>& torque) {
   const Register zero{};
-  const Register column[8] = {f.x.v[0], f.y.v[0], f.z.v[0], zero, torque.x.v[0], torque.y.v[0], torque.z.v[0], zero};
+  const Register column[8] = {f.x.v, f.y.v, f.z.v, zero, torque.x.v, torque.y.v, torque.z.v, zero};
   Register row[8];
   detail::transpose8(column, row);
   for (int k = 0; k < 8; ++k) {
@@ -187,8 +187,8 @@ inline void add_to_rows(double* force, const Offset* i, const Offset* j, const V
 inline void add_to_rows(double* force, const Offset* i, const Offset* j, const Vec3Of<Lanes>& f,
                         const Vec3Of<Lanes>& torque_i, const Vec3Of<Lanes>& torque_j) {
   const Register zero{};
-  const Register on_i[8] = {f.x.v[0], f.y.v[0], f.z.v[0], zero, torque_i.x.v[0], torque_i.y.v[0], torque_i.z.v[0], zero};
-  const Register on_j[8] = {f.x.v[0], f.y.v[0], f.z.v[0], zero, torque_j.x.v[0], torque_j.y.v[0], torque_j.z.v[0], zero};
+  const Register on_i[8] = {f.x.v, f.y.v, f.z.v, zero, torque_i.x.v, torque_i.y.v, torque_i.z.v, zero};
+  const Register on_j[8] = {f.x.v, f.y.v, f.z.v, zero, torque_j.x.v, torque_j.y.v, torque_j.z.v, zero};
   Register row_i[8], row_j[8];
   detail::transpose8(on_i, row_i);
   detail::transpose8(on_j, row_j);

@@ -119,7 +119,7 @@ void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairG
   Vec3Of<N> force = N(-1) * (kt * spring + gamma * g.slip);
   const N limit = law.tangential.mu * abs(out.normal), trial2 = dot(force, force);
   const auto slides = trial2 > limit * limit;
-  if (any(slides)) {
+  if (worthwhile(slides)) {
     force = select(slides, limit * rsqrt(trial2), N(1)) * force;
     if constexpr (Advance) {
       const N minus_inverse = select(kt > N(0), N(-1) / kt, N(0));
@@ -154,7 +154,7 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
   const N limit = law.rolling.limit(out.normal, size), trial2 = kr * kr * dot(roll, roll);
   // A spring at its limit slides, also when it is read again after having been cut to it.
   const auto slides = trial2 > N(1 - 1e-12) * limit * limit;
-  if (any(slides)) {
+  if (worthwhile(slides)) {
     const Vec3Of<N> cut = select(slides, limit * rsqrt(trial2), N(1)) * roll;
     if constexpr (Advance) {
       out.roll_loss = out.roll_loss + slip_loss(kr, before, roll, cut);
