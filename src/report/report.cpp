@@ -11,6 +11,7 @@
 #include "io/files.hpp"
 #include "io/vtk.hpp"
 #include "report/figures.hpp"
+#include "report/grain_picture.hpp"
 #include "report/run_data.hpp"
 
 namespace bagnold::report {
@@ -124,6 +125,13 @@ void write_report(const std::vector<std::filesystem::path>& directories, const s
   std::filesystem::create_directories(folder, failed);
   if (failed) throw IoError(fmt::format("{}: error: cannot be created: {}", folder.string(), failed.message()));
   std::string pictures;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const std::string name = runs.size() == 1 ? "grains" : "grains_" + runs[k].name;
+    const auto svg = folder / (name + ".svg");
+    if (!draw_grains(directories[k], svg)) continue;
+    for (const auto& format : formats) draw_grains(directories[k], folder / (name + "." + format));
+    pictures += picture(io::read_file(svg), {.name = name, .caption = "The last snapshot of " + runs[k].name + " from the side, its front layer."});
+  }
   for (const auto& figure : figures(runs)) {
     const auto svg = folder / (figure.name + ".svg");
     draw(figure, svg);
