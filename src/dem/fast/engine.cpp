@@ -154,7 +154,9 @@ double excursion(const Engine& engine, const Slab& slab, double horizon) {
 }  // namespace
 
 bool audit(Engine& engine) {
-  bool all_hold = true;
+  bool all_hold = std::all_of(engine.slabs.begin(), engine.slabs.end(), [&](const Slab& slab) { return holds(engine, slab); });
+  if (all_hold) return true;  // the usual case is not worth waking threads
+  all_hold = true;
 #pragma omp parallel for schedule(static) reduction(&& : all_hold) if (engine.grain.size() >= 500)
   for (std::size_t s = 0; s < engine.slabs.size(); ++s) {
     Slab& slab = engine.slabs[s];

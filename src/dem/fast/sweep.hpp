@@ -47,7 +47,7 @@ void sweep(const Ring& ring, int from, int to, bool threads, Move&& move, Act&& 
           if (a > b + t) act(a - 1, t);
         }
     }
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
     for (int k = 0; k < ring.blocks; ++k) {
       const int e = ring.block_begin(k + 1);
       for (int t = from; t < to; ++t) {
