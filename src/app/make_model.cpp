@@ -9,6 +9,7 @@ std::unique_ptr<Model> make_model(config::Case& input) {
   // One line per model.
   static const std::map<std::string, std::unique_ptr<Model> (*)(config::Case&)> models = {
       {"dem", make_dem},
+      {"shallow", make_shallow},
   };
   std::vector<std::string> names;
   for (const auto& [name, make] : models) names.push_back(name);

@@ -70,5 +70,6 @@ class Model {
 // Reads the part of the case that belongs to the model named in it, checks it, builds the initial state.
 std::unique_ptr<Model> make_model(config::Case& input);
 std::unique_ptr<Model> make_dem(config::Case& input);
+std::unique_ptr<Model> make_shallow(config::Case& input);
 
 }  // namespace bagnold::app

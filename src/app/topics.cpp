@@ -7,6 +7,7 @@ namespace bagnold::app {
 std::vector<Topic> all_topics() {
   std::vector<Topic> topics;
   add_dem_topics(topics);
+  add_shallow_topics(topics);
   topics.push_back(topic<OutputSettings>("section of every case"));
   return topics;
 }

@@ -1,0 +1,118 @@
+// The shallow-layer model as the driver sees it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/model.hpp"
+#include "app/shallow_maps.hpp"
+#include "app/signals.hpp"
+
+namespace bagnold::app {
+
+namespace {
+
+class ShallowModel final : public Model {
+ public:
+  explicit ShallowModel(ShallowInput input) : in_(std::move(input)), initial_mass_(shallow::total_mass(in_.solver, in_.state)) {
+    start_maps(in_, maps_);
+    for (const shallow::Boundary& b : in_.solver.setup.boundary) fed_ |= b.kind == shallow::BoundaryKind::inflow;
+  }
+
+  std::string_view scenario() const override { return in_.scenario; }
+  double time() const override { return in_.state.time; }
+  double end_time() const override { return in_.end; }
+  std::int64_t step() const override { return in_.state.step; }
+  double element_steps() const override { return in_.state.cell_updates - updates_before_; }
+
+  void advance(double until) override {
+    while (in_.state.time < until * (1 - 1e-12) && !ended() && !stop_requested()) {
+      shallow::advance_one_step(in_.solver, in_.state);
+      observe(in_, maps_);
+      arrested_ = !fed_ && shallow::at_rest(in_.solver, in_.state) ? arrested_ + 1 : 0;
+    }
+  }
+  bool ended() const override { return in_.stop_when_arrested && arrested_ >= steps_at_rest; }
+  std::string status() const override { return arrested_ >= steps_at_rest ? "arrested" : "completed"; }
+
+  std::vector<NamedArray> state() override {
+    auto arrays = shallow::state_arrays(in_.state);
+    for (const NamedArray& a : map_arrays(maps_)) arrays.push_back(a);
+    arrays.push_back({"initial_mass", &initial_mass_});
+    arrays.push_back({"arrested", &arrested_});
+    return arrays;
+  }
+  void restored() override {
+    shallow::refresh(in_.solver, in_.state);
+    observe(in_, maps_);
+    updates_before_ = in_.state.cell_updates;
+  }
+
+  std::vector<io::Column> series_columns() const override { return shallow_series_columns(in_); }
+  std::vector<double> series_row() override { return shallow_series_row(in_, maps_, initial_mass_); }
+  std::string progress() override {
+    const auto row = series_row();
+    return fmt::format("front {:.4g}, h {:.3g}, speed {:.3g}", row[4], row[6], row[7]);
+  }
+
+  void write_snapshot(io::H5File& file, const std::string& group) override { write_shallow_snapshot(file, group, in_, maps_); }
+  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory, int number) override {
+    const std::string name = fmt::format("layer_{:06}.vti", number);
+    write_shallow_vti(directory / name, in_, maps_);
+    return {{"layer", name}};
+  }
+  void write_results(const std::filesystem::path& directory) override { write_shallow_results(directory, in_, maps_); }
+
+  void add_summary(nlohmann::ordered_json& summary, double wall_s) override {
+    const auto row = series_row();
+    const auto number = [](double v) { return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr); };
+    const shallow::Grid& g = in_.solver.setup.grid;
+    summary["cells"] = static_cast<std::int64_t>(g.nx) * g.ny;
+    summary["cell_updates_per_s"] = number(wall_s > 0 ? element_steps() / wall_s : NAN);
+    summary["mass_error_rel"] = std::abs(row[3]);
+    summary["min_h"] = maps_.smallest_h;
+    summary["max_h"] = maps_.largest_h;
+    summary["dt_min"] = in_.state.smallest_step;
+    summary["closure"] = in_.solver.closure.set.name;
+    summary["front"] = number(row[4]);
+    summary["tail"] = number(row[5]);
+    summary["mass"] = row[1];
+    summary["mass_out"] = row[2];
+    summary["max_speed"] = *std::max_element(maps_.max_speed.begin(), maps_.max_speed.end());
+    double used = 0, outside = 0;
+    for (std::size_t k = 0; k < maps_.max_h.size(); ++k) {
+      used += maps_.max_h[k] > in_.impact_depth ? 1 : 0;
+      outside += maps_.max_h[k] > in_.impact_depth ? maps_.outside[k] : 0;
+    }
+    summary["outside_validity_fraction"] = number(used > 0 ? outside / used : NAN);
+  }
+
+  std::vector<Derived> derived() override {
+    const shallow::Solver& s = in_.solver;
+    const shallow::Grid& g = s.setup.grid;
+    double h = 0;
+    for (double v : maps_.h) h = std::max(h, v);
+    const double c = std::sqrt(s.closure.K * s.closure.normal * h);
+    return {{"cells", fmt::format("{} x {}", g.nx, g.ny), "grid"},
+            {"cell size", fmt::format("{:.4g} x {:.4g}", g.dx, g.dy), "length"},
+            {"mass", fmt::format("{:.6g}", initial_mass_), "in the domain at the start"},
+            {"wave speed", fmt::format("{:.4g}", c), "sqrt(K g cos(theta) h) of the thickest cell"},
+            {"first step", h > 0 ? fmt::format("{:.3g}", s.setup.scheme.cfl * g.dx / c) : "none", "about; cfl dx/wave speed"},
+            {"closure", s.closure.set.name, s.closure.set.source}};
+  }
+
+ private:
+  static constexpr std::int64_t steps_at_rest = 10;  // in a row, before the run counts as over
+  ShallowInput in_;
+  ShallowMaps maps_;
+  double initial_mass_ = 0, updates_before_ = 0;
+  std::int64_t arrested_ = 0;
+  bool fed_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_shallow(config::Case& input) { return std::make_unique<ShallowModel>(read_shallow(input)); }
+
+}  // namespace bagnold::app

@@ -1,0 +1,124 @@
+#include "app/shallow_input.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "scenario/shallow.hpp"
+
+namespace bagnold::app {
+namespace {
+
+using config::Case;
+using config::Section;
+
+shallow::Boundary read_boundary(const Section& s, const char* side) {
+  const std::string kind = s.choose(side, "outflow", {"wall", "outflow", "periodic", "inflow"});
+  shallow::Boundary b;
+  if (kind == "wall") b.kind = shallow::BoundaryKind::wall;
+  if (kind == "periodic") b.kind = shallow::BoundaryKind::periodic;
+  if (kind == "inflow") {
+    b.kind = shallow::BoundaryKind::inflow;
+    const Section q = s.child(std::string(side) + "_inflow");
+    b.inflow.t = q.get<std::vector<double>>("t", std::vector<double>{0}, any_number(), "time");
+    b.inflow.h = q.get<std::vector<double>>("h", std::nullopt, non_negative(), "length");
+    b.inflow.u = q.get<std::vector<double>>("u", std::nullopt, any_number(), "length/time");
+  }
+  return b;
+}
+
+void read_scheme(const Section& s, shallow::Scheme& scheme, double diameter) {
+  scheme.cfl = s.get<double>("cfl", scheme.cfl, Range{.lo = 0, .hi = 0.5, .lo_open = true});
+  scheme.dry_depth = s.get<double>("dry_depth", 1e-3 * diameter, positive(), "length");
+  scheme.tip_depth = s.get<double>("tip_depth", 3 * diameter, non_negative(), "length");
+  if (const auto step = s.get_auto("max_step", positive(), "time")) scheme.max_step = *step;
+}
+
+// Width of a channel at the faces of the grid, linear between the points (x, width).
+void read_channel(const Section& s, shallow::Definition& d) {
+  const auto x = s.get<std::vector<double>>("x", std::nullopt, any_number(), "length");
+  const auto w = s.get<std::vector<double>>("width", std::nullopt, positive(), "length");
+  if (x.size() != w.size() || x.size() < 2) s.fail("width", "expected as many widths as x, at least two");
+  for (std::size_t k = 1; k < x.size(); ++k)
+    if (!(x[k] > x[k - 1])) s.fail("x", "must increase");
+  for (int f = 0; f <= d.grid.nx; ++f) {
+    const double at = std::min(std::max(d.grid.x0 + f * d.grid.dx, x.front()), x.back());
+    std::size_t k = 1;
+    while (k + 1 < x.size() && x[k] < at) ++k;
+    d.width.push_back(w[k - 1] + (w[k] - w[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]));
+  }
+}
+
+void read_observers(const Section& s, ShallowInput& out) {
+  const shallow::Grid& g = out.solver.setup.grid;
+  for (const Section& item : s.list("gauges")) {
+    Gauge q{.x = item.get<double>("x", std::nullopt, any_number(), "length"), .y = item.get<double>("y", 0.0, any_number(), "length")};
+    q.i = static_cast<int>(std::floor((q.x - g.x0) / g.dx));
+    q.j = g.two_d() ? static_cast<int>(std::floor((q.y - g.y0) / g.dy)) : 0;
+    if (q.i < 0 || q.i >= g.nx || q.j < 0 || q.j >= g.ny) item.fail("x", fmt::format("the gauge ({}, {}) lies outside the grid", q.x, q.y));
+    out.gauges.push_back(q);
+  }
+  for (const Section& item : s.list("sections")) {
+    const auto a = item.get<std::vector<double>>("from", std::nullopt, any_number(), "length");
+    const auto b = item.get<std::vector<double>>("to", std::nullopt, any_number(), "length");
+    if (a.size() != 2 || b.size() != 2 || !g.two_d()) item.fail("from", "a cross-section needs two points [x, y] and a two-dimensional grid");
+    for (const auto& p : {a, b})
+      if (p[0] < g.x0 || p[0] > g.x0 + g.nx * g.dx || p[1] < g.y0 || p[1] > g.y0 + g.ny * g.dy) item.fail("from", "the cross-section leaves the grid");
+    out.sections.push_back({a[0], a[1], b[0], b[1]});
+  }
+  out.impact_depth = s.get<double>("arrival_depth", 10 * out.solver.setup.scheme.dry_depth, positive(), "length");
+}
+
+ShallowInput read_unlocated(Case& input) {
+  const Section root = input.root(), scenario = root.child("scenario");
+  (void)root.get<std::int64_t>("seed", 1, at_least(0));
+  ShallowInput out;
+  shallow::Definition d;
+  out.scenario = scenario.choose("kind", std::nullopt, {"incline", "run-out", "terrain"});
+  d.closure = read_closure(input);
+  const double diameter = root.child("closure").get<double>("diameter", 1.0, positive(), "length");
+  const Section sides = root.child("boundary");
+  constexpr std::array<const char*, 4> names = {"left", "right", "bottom", "top"};
+  for (std::size_t k = 0; k < 4; ++k) d.boundary[k] = read_boundary(sides, names[k]);
+  if (out.scenario == "incline") scenario::set_up(scenario.read<scenario::Incline>(), d);
+  else if (out.scenario == "run-out") scenario::set_up(scenario.read<scenario::RunOut>(), d);
+  else read_terrain(input, scenario, d, out);
+  if (root.has("channel")) read_channel(root.child("channel"), d);
+  read_scheme(root.child("scheme"), d.scheme, diameter);
+
+  const std::string projection = out.projection;
+  const bool georeferenced = out.georeferenced;
+  out.solver = shallow::make_solver(std::move(d));
+  out.state = shallow::empty_state(out.solver);
+  out.projection = projection;
+  out.georeferenced = georeferenced;
+
+  const Section release = root.child("release");
+  const std::string shape = release.choose("shape", "none", {"none", "slab", "cap", "raster", "polygons"});
+  if (shape == "slab") scenario::fill_slab(release.read<scenario::Release>(), out.solver, out.state);
+  if (shape == "cap") scenario::fill_cap(release.read<scenario::Release>(), out.solver, out.state);
+  if (shape == "raster" || shape == "polygons") {
+    if (!out.georeferenced) release.fail("shape", "a release from a file needs scenario.kind = \"terrain\"");
+    release_on_terrain(input, release, out);
+  }
+  read_observers(root.child("observe"), out);
+  const Section time = root.child("time");
+  out.end = time.get<double>("end", std::nullopt, positive(), "time");
+  out.stop_when_arrested = time.get<bool>("stop_when_arrested", true);
+  shallow::refresh(out.solver, out.state);
+  return out;
+}
+
+}  // namespace
+
+ShallowInput read_shallow(Case& input) {
+  try {
+    return read_unlocated(input);
+  } catch (const UnphysicalError& e) {
+    input.fail(e.key, e.text);
+  }
+}
+
+}  // namespace bagnold::app
