@@ -5,8 +5,8 @@
 namespace bagnold {
 
 template <int n, class F>
-inline void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) { (f(k), ...); }(std::make_integer_sequence<int, n>{});
+[[gnu::always_inline]] inline void unrolled(F&& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) { (f(k), ...); }(std::make_integer_sequence<int, n>{});
 }
 
 }  // namespace bagnold

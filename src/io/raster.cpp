@@ -139,7 +139,7 @@ bool same_projection(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return true;
   OGRSpatialReference first, second;
   if (first.importFromWkt(a.c_str()) != OGRERR_NONE || second.importFromWkt(b.c_str()) != OGRERR_NONE) return a == b;
-  const char* options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  const char* options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
   return first.IsSame(&second, options) != 0;
 }
 

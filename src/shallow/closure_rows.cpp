@@ -25,10 +25,10 @@ void measured_row(const PreparedClosure& p, int n, const double* __restrict D,
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     const double mass = D[k], speed = s[k];
-    const auto mu_at = [&](double at) { return law.mu(at, speed / std::sqrt(at)); };
+    const auto mu_at = [&](double at) __attribute__((always_inline)) { return law.mu(at, speed / std::sqrt(at)); };
     double h0 = mass * inverse_rho, e0 = h0 - mass / rho_of_mu(mu_at(h0));
     double h1 = h0 - e0;
-    unrolled<density_iterations>([&](int) {
+    unrolled<density_iterations>([&](int) __attribute__((always_inline)) {
       const double e1 = h1 - mass / rho_of_mu(mu_at(h1)), change = e1 - e0;
       const double slope = (h1 - h0) * change / (change * change + 1e-80);  // 0 once converged
       h0 = h1;

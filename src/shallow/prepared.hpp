@@ -16,11 +16,11 @@ struct Polynomial {
   std::array<double, degree + 1> coefficient{};
   double middle = 0, inverse_half_width = 0;
   static Polynomial fit(double lo, double hi, const std::function<double(double)>& f);
-  double operator()(double x) const {
+  [[gnu::always_inline]] double operator()(double x) const {
     double s = (x - middle) * inverse_half_width;
     s = 0.5 * (std::abs(s + 1) - std::abs(s - 1));  // clamped to [-1, 1] without a branch
     double y = coefficient[degree];
-    unrolled<degree>([&](int k) { y = y * s + coefficient[static_cast<std::size_t>(degree - 1 - k)]; });
+    unrolled<degree>([&](int k) __attribute__((always_inline)) { y = y * s + coefficient[static_cast<std::size_t>(degree - 1 - k)]; });
     return y;
   }
 };

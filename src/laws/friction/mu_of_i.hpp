@@ -21,8 +21,8 @@ struct MuOfI {
 
   struct Prepared {
     double mu_s, delta_mu, h_scale;  // I0/I = h/(h_scale F)
-    double mu(double h, double F) const { return mu_and_slope(h, F).mu; }
-    MuAndSlope mu_and_slope(double h, double F) const {
+    [[gnu::always_inline]] double mu(double h, double F) const { return mu_and_slope(h, F).mu; }
+    [[gnu::always_inline]] MuAndSlope mu_and_slope(double h, double F) const {
       const double y = h_scale * F, q = 1 / (y + h + 1e-150);
       return {mu_s + delta_mu * (y * q), delta_mu * h_scale * (h * q) * q};
     }
