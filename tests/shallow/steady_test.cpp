@@ -1,4 +1,4 @@
-// Problems 10 to 14: oblique jump, travelling front, roll waves, contraction, the inverse steady state.
+// Problems 10, 12, 13, 14: oblique jump, roll waves, contraction, the inverse steady state.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -42,51 +42,6 @@ TEST(Problem10, ObliqueJump) {
   }
 }
 
-// 11. Front of Pouliquen 1999 with the flow rule of lambda = 1: profile against its ODE.
-TEST(Problem11, TravellingFront) {
-  const double theta = 25, h_inf = 8, gc = std::cos(rad(theta)), T = tan_d(theta);
-  const laws::PouliquenForterre law;
-  const double F = law.beta * h_inf / laws::stopping_height(law, theta) - law.gamma, U = F * std::sqrt(gc * h_inf);
-  closure::ClosureSet set = coulomb(0);
-  set.friction = law;
-  Definition s = line(600, 0, 300, theta, set);
-  s.boundary[0] = {BoundaryKind::inflow, {{0}, {h_inf}, {U}}};
-  s.scheme.dry_depth = 1e-5;
-  Flow run(s);
-  run.fill([&](double x, double) { return x < 40 ? h_inf : 0; }, [&](double x, double) { return x < 40 ? U : 0; });
-  const auto front_at = [&](double level) {
-    const Profile p = run.profile();
-    for (std::size_t i = p.x.size() - 1; i > 0; --i)
-      if (p.h[i - 1] > level) return p.x[i - 1] + (p.h[i - 1] - level) / (p.h[i - 1] - p.h[i]) * (p.x[i] - p.x[i - 1]);
-    return 0.0;
-  };
-  run.to(70);
-  const double x1 = front_at(1), t1 = run.state.time;
-  run.to(130);
-  EXPECT_NEAR((front_at(1) - x1) / (run.state.time - t1) / U, 1, 0.01);
-  // dh/dxi = T - mu(h, U/sqrt(gc h)) (alpha = K = 1), integrated up from h = 1
-  double worst = 0;
-  const double start = front_at(1);
-  double h = 1, xi = 0;
-  while (h < 6) {
-    const double step = -1e-3, slope = T - law.prepared(1).mu(h, U / std::sqrt(gc * h));
-    const double middle = h + 0.5 * step * slope;
-    h += step * (T - law.prepared(1).mu(middle, U / std::sqrt(gc * middle)));
-    xi += step;
-    worst = std::max(worst, std::abs((front_at(h) - start) - xi));
-    xi += 0;
-    if (h > 6) break;
-    for (int k = 0; k < 400 && h < 6; ++k) {  // compare every 0.4 only
-      const double sl = T - law.prepared(1).mu(h, U / std::sqrt(gc * h)), mid = h + 0.5 * step * sl;
-      h += step * (T - law.prepared(1).mu(mid, U / std::sqrt(gc * mid)));
-      xi += step;
-    }
-  }
-  EXPECT_LT(worst, 0.6);  // of a nose about 40 long
-  EXPECT_GT(-xi, 10);
-  tabulate("11 travelling front", "largest offset of the profile", worst, "< 0.6");
-}
-
 namespace {
 
 // Growth rate of a small sine of wavenumber k on uniform flow: linear theory of eq. 34 with constant alpha, K.
@@ -101,10 +56,8 @@ double theory(const laws::PouliquenForterre& law, double theta, double h, double
   const C ik(0, k);
   // s h' = -ik m', s m' = -ik (A h' + B m') + Sh h' + Sm m'
   const double A = -alpha * u * u + gc * h, B = 2 * alpha * u;
-  const C b = ik * B - Sm, c = -ik * (-(ik * A) + Sh);
-  const C root = std::sqrt(b * b - 4.0 * (-c) * -1.0);
+  const C b = ik * B - Sm;
   const C s1 = 0.5 * (-b + std::sqrt(b * b + 4.0 * (-ik) * (-(ik * A) + Sh))), s2 = 0.5 * (-b - std::sqrt(b * b + 4.0 * (-ik) * (-(ik * A) + Sh)));
-  (void)root;
   return std::max(s1.real(), s2.real());
 }
 
