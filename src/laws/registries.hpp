@@ -27,6 +27,23 @@
 #include "laws/stress_ratio/constant.hpp"
 #include "laws/stress_ratio/linear_angle.hpp"
 
+// continuum (sph)
+#include "laws/dilatancy/linear.hpp"
+#include "laws/dilatancy/rational.hpp"
+#include "laws/eos/compressible_grains.hpp"
+#include "laws/kernel/wendland_c2.hpp"
+#include "laws/kernel/wendland_c4.hpp"
+#include "laws/mean/arithmetic.hpp"
+#include "laws/mean/geometric.hpp"
+#include "laws/mean/harmonic.hpp"
+#include "laws/regularisation/minatti2015.hpp"
+#include "laws/regularisation/papanastasiou.hpp"
+#include "laws/regularisation/simple.hpp"
+#include "laws/rheology/mu_i.hpp"
+#include "laws/rheology/mu_i_collisional.hpp"
+#include "laws/viscous/cleary.hpp"
+#include "laws/viscous/variational.hpp"
+
 namespace bagnold::laws {
 
 // Normal contact forces.
@@ -73,5 +90,41 @@ using StressRatioLaws = Registry<
 using ShapeFactorLaws = Registry<
     ConstantShapeFactor,
     StrainModelShapeFactor>;
+
+// Friction of continua, mu(i).
+using Rheologies = Registry<
+    rheology::MuI,
+    rheology::MuICollisional>;
+
+// Volume fraction of continua, phi(i).
+using Dilatancies = Registry<
+    dilatancy::Linear,
+    dilatancy::Rational>;
+
+// Pressure of grains.
+using GrainEos = Registry<
+    eos::CompressibleGrains>;
+
+// Viscosity at rest.
+using Regularisations = Registry<
+    regularisation::Minatti2015,
+    regularisation::Papanastasiou,
+    regularisation::Simple>;
+
+// Smoothing kernels.
+using SphKernels = Registry<
+    kernel::WendlandC2,
+    kernel::WendlandC4>;
+
+// Mean viscosity of two particles.
+using ViscosityMeans = Registry<
+    mean::Harmonic,
+    mean::Arithmetic,
+    mean::Geometric>;
+
+// Discrete pressure and viscous forces.
+using ViscousOperators = Registry<
+    viscous::Cleary,
+    viscous::Variational>;
 
 }  // namespace bagnold::laws

@@ -1,0 +1,21 @@
+// Mean viscosity of two particles.
+#pragma once
+#include <string_view>
+
+#include "core/fields.hpp"
+#include "core/pack.hpp"
+
+namespace bagnold::laws::mean {
+
+struct Arithmetic {
+  static constexpr std::string_view name = "arithmetic";
+  static constexpr std::string_view summary = "(a + b)/2";
+  static constexpr std::string_view source = "plain average";
+  static constexpr auto fields() { return std::tuple<>{}; }
+  template <class T>
+  static T of(T a, T b) {
+    return 0.5 * (a + b);
+  }
+};
+
+}  // namespace bagnold::laws::mean

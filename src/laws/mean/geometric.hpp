@@ -1,0 +1,22 @@
+// Mean viscosity of two particles.
+#pragma once
+#include <cmath>
+#include <string_view>
+
+#include "core/fields.hpp"
+#include "core/pack.hpp"
+
+namespace bagnold::laws::mean {
+
+struct Geometric {
+  static constexpr std::string_view name = "geometric";
+  static constexpr std::string_view summary = "sqrt(a b)";
+  static constexpr std::string_view source = "plain average of logarithms";
+  static constexpr auto fields() { return std::tuple<>{}; }
+  template <class T>
+  static T of(T a, T b) {
+    return sqrt(T(a * b));
+  }
+};
+
+}  // namespace bagnold::laws::mean

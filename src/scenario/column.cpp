@@ -1,0 +1,52 @@
+#include "scenario/column.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bagnold::scenario {
+
+void set_geometry(const Column& column, ColumnGeometry geometry, sph::Model& model) {
+  model.dim = geometry == ColumnGeometry::cylinder ? 3 : 2;
+  model.axisymmetric = geometry == ColumnGeometry::axisymmetric;
+  model.floor = true;
+  model.spacing = column.spacing;
+  model.period = {0, 0, 0};
+  model.gravity = {0, 0, 0};
+  model.gravity[static_cast<std::size_t>(model.vertical())] = -9.81;
+}
+
+sph::Particles make_particles(const Column& column, ColumnGeometry geometry, const sph::Model& model) {
+  const double dp = column.spacing;
+  const auto up = std::max<std::int64_t>(1, std::llround(column.height / dp)), out = std::max<std::int64_t>(1, std::llround(column.radius / dp));
+  std::vector<std::array<double, 2>> base;  // horizontal positions
+  for (std::int64_t a = geometry == ColumnGeometry::axisymmetric ? 0 : -out; a < out; ++a) {
+    const double x = (static_cast<double>(a) + 0.5) * dp;
+    if (geometry != ColumnGeometry::cylinder) base.push_back({x, 0});
+    else
+      for (std::int64_t b = -out; b < out; ++b)
+        if (const double y = (static_cast<double>(b) + 0.5) * dp; x * x + y * y < column.radius * column.radius) base.push_back({x, y});
+  }
+  auto p = sph::make_particles(static_cast<std::int64_t>(base.size()) * up, model.dim);
+  const auto vertical = static_cast<std::size_t>(model.vertical());
+  const double rho0 = model.phi_max() * model.grains().grain_density, Kt = model.grains().compressibility;
+  std::size_t i = 0;
+  for (const auto& [x, y] : base)
+    for (std::int64_t b = 0; b < up; ++b, ++i) {
+      const double z = (static_cast<double>(b) + 0.5) * dp, pressure = rho0 * 9.81 * (static_cast<double>(up) * dp - z);
+      p.x[0][i] = x;
+      if (model.dim == 3) p.x[1][i] = y;
+      p.x[vertical][i] = z;
+      p.root[i] = std::sqrt(Kt * pressure);
+      p.rho[i] = rho0 * (1 + Kt * pressure);
+      const double volume = model.dim == 3 ? dp * dp * dp : dp * dp * (model.axisymmetric ? 2 * M_PI * x : 1);
+      p.mass[i] = p.rho[i] * volume;
+    }
+  return p;
+}
+
+double measured_runout(double a, ColumnGeometry geometry) {
+  if (geometry == ColumnGeometry::planar) return a < 1.8 ? 1.2 * a : 1.9 * std::cbrt(a * a);
+  return a < 1.7 ? 1.24 * a : 1.6 * std::sqrt(a);
+}
+
+}  // namespace bagnold::scenario

@@ -1,0 +1,208 @@
+#include "sph/algorithm.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "sph/constitutive.hpp"
+#include "sph/forces.hpp"
+#include "sph/implicit.hpp"
+#include "sph/kinematics.hpp"
+#include "sph/order.hpp"
+
+namespace bagnold::sph {
+namespace {
+
+constexpr double advective_cfl = 0.2;      // h per step at most, for the schemes whose step is not bound by viscosity
+constexpr double step_growth = 1.1;        // of those schemes, from a first step of `first_step` times the limit
+constexpr double first_step = 0.05;
+constexpr double fastest = 1e3;            // m/s: nothing granular moves so fast, the run has failed
+constexpr double closest_to_wall = 0.02;   // over dp
+
+// a += factor b, all directions.
+void add(Field& a, const Field& b, double factor, const Model& model) {
+  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
+    parallel_for(static_cast<std::int64_t>(a[d].size()), [&](std::int64_t i) {
+      a[d][static_cast<std::size_t>(i)] += factor * b[d][static_cast<std::size_t>(i)];
+    });
+}
+void add(std::vector<double>& a, const std::vector<double>& b, double factor) {
+  parallel_for(static_cast<std::int64_t>(a.size()),
+               [&](std::int64_t i) { a[static_cast<std::size_t>(i)] += factor * b[static_cast<std::size_t>(i)]; });
+}
+
+struct Fastest {
+  double v2 = 0;
+  Fastest& operator+=(const Fastest& other) {
+    v2 = std::max(v2, other.v2);
+    return *this;
+  }
+};
+
+double fastest_particle(const State& state, const Model& model) {
+  const Particles& p = state.particles;
+  const double v2 = parallel_sum<Fastest>(p.size(), [&](std::int64_t k) {
+    double sum = 0;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) {
+      const double c = p.v[d][static_cast<std::size_t>(k)];
+      sum += c * c;
+    }
+    return Fastest{sum < fastest * fastest ? sum : std::numeric_limits<double>::infinity()};  // also for NaN
+  }).v2;
+  if (!std::isfinite(v2))
+    throw NumericalError(fmt::format("sph: a particle moves faster than {:g} m/s at t = {:g} s, step {}: the step limits (cfl, "
+                                     "viscous_factor) are too large for this flow", fastest, state.time, state.step));
+  return std::sqrt(v2);
+}
+
+// Particles driven into the floor or over the axis are put back and lose that velocity.
+void keep_inside(Particles& p, const Model& model) {
+  const double least = closest_to_wall * model.spacing;
+  const auto bound = [&](std::size_t d) {
+    for (std::size_t i = 0; i < p.x[d].size(); ++i)
+      if (p.x[d][i] < least) p.x[d][i] = least, p.v[d][i] = std::max(p.v[d][i], 0.0);
+  };
+  if (model.floor) bound(static_cast<std::size_t>(model.vertical()));
+  if (model.axisymmetric) bound(0);
+}
+
+// Detached particles on the base carry no pressure, so nothing else would ever stop them.
+void brake_detached(const Work& w, Particles& p, const Model& model, double dt) {
+  constexpr double detached = 0.35, at_base = 0.8;  // coverage; height over dp
+  const auto up = static_cast<std::size_t>(model.vertical());
+  const double most = model.numerics.base_friction * model.static_friction() * std::abs(model.gravity[up]) * dt;
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (w.coverage[i] > detached || p.x[up][i] > at_base * model.spacing) return;
+    double speed = 0;
+    for (std::size_t d = 0; d < up; ++d) speed += p.v[d][i] * p.v[d][i];
+    speed = std::sqrt(speed);
+    const double left = speed > most ? 1 - most / speed : 0;
+    for (std::size_t d = 0; d < up; ++d) p.v[d][i] *= left;
+  });
+}
+
+// Symplectic midpoint scheme                                                    Minatti & Paris 2015, section 3.5
+void midpoint_step(State& state, Work& w, const Model& model) {
+  Particles& p = state.particles;
+  const double half = 0.5 * state.dt;
+  if (outdated(w.pairs, p, model.dim, half)) rebuild(w.pairs, p, model);
+  kinematics(w, p, model, Kinematics::density);
+  const auto half_step = [&] {
+    add(p.x, p.v, half, model);
+    add(p.v, p.rate, half, model);
+    add(p.rho, w.density_rate, half);
+  };
+  half_step();
+  kinematics(w, p, model, Kinematics::pairs);
+  state.max_kinematic_viscosity = constitutive(w, p, model);
+  pair_momentum_rate(w, p, model, true);
+  std::swap(p.rate, w.acceleration);
+  half_step();
+}
+
+// rho -> pressure -> viscosity -> pressure force -> viscous force (at v(n+1) or v(n)) -> x
+void sequential_step(State& state, Work& w, const Model& model) {
+  Particles& p = state.particles;
+  const double dt = state.dt;
+  const bool corrected = model.corrected();
+  if (outdated(w.pairs, p, model.dim, 0)) rebuild(w.pairs, p, model);
+  kinematics(w, p, model, corrected ? Kinematics::corrected : Kinematics::pairs, true);
+  if (model.numerics.density_diffusion > 0) diffuse_density(w, p, model);
+  add(p.rho, w.density_rate, dt);
+  if (model.numerics.volume_correction > 0) correct_volumes(w, p, model, dt);
+  state.max_kinematic_viscosity = constitutive(w, p, model);
+  update_volumes(w, p, model);
+  if (corrected) corrected_pressure_and_coefficients(w, p, model);
+  else pair_momentum_rate(w, p, model, false), pair_coefficients(w, p, model);
+  if (model.stepping == Stepping::implicit) {
+    solve_viscous(w, state, model, dt);
+  } else {
+    viscous_force(w, p, model, p.v, w.force);
+    parallel_for(p.size(), [&](std::int64_t k) {
+      const auto i = static_cast<std::size_t>(k);
+      for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) {
+        p.rate[d][i] = w.acceleration[d][i] + w.force[d][i] / p.mass[i];
+        p.v[d][i] += dt * p.rate[d][i];
+      }
+    });
+  }
+  if (model.numerics.base_friction > 0) brake_detached(w, p, model, dt);
+  if (model.numerics.shifting > 0) shift_particles(w, p, model, dt);
+  add(p.x, p.v, dt, model);
+  keep_inside(p, model);
+}
+
+}  // namespace
+
+void check(const Model& model) {
+  if (model.axisymmetric && !model.corrected())
+    throw UnphysicalError("numerics.operator", "axisymmetric flow needs the variational operator");
+  if (model.corrected() && model.stepping == Stepping::minatti2015)
+    throw UnphysicalError("numerics.stepping", "the variational operator needs implicit or explicit_euler stepping");
+  if (model.corrected() && model.numerics.artificial_viscosity > 0)
+    throw UnphysicalError("numerics.artificial_viscosity", "belongs to the minatti2015 operator; the variational one needs none");
+  if (!model.corrected() && model.numerics.density_diffusion > 0)
+    throw UnphysicalError("numerics.density_diffusion", "needs the variational operator");
+  if (model.stepping == Stepping::minatti2015 && (model.numerics.shifting > 0 || model.numerics.volume_correction > 0))
+    throw UnphysicalError("numerics.shifting", "shifting and volume correction need implicit or explicit_euler stepping");
+  if (model.stepping != Stepping::minatti2015 && model.numerics.artificial_viscosity > 0)
+    throw UnphysicalError("numerics.artificial_viscosity", "needs minatti2015 stepping");
+  for (std::size_t d = 0; d < 3; ++d)
+    if (model.period[d] > 0 && model.period[d] < 2.2 * model.h())
+      throw UnphysicalError("scenario.length", fmt::format("a periodic length must exceed 2.2 h = {:g} m", 2.2 * model.h()));
+  const auto range = [](const auto& law) { return law.phi_min < law.phi_max; };
+  if (!std::visit(range, model.material.dilatancy)) throw UnphysicalError("material.phi_min", "must be below phi_max");
+  if (!(std::visit([](const auto& r) { return r.limit_friction() > r.static_friction(); }, model.material.rheology)))
+    throw UnphysicalError("material.limit_angle_deg", "must exceed static_angle_deg");
+}
+
+double step_limit(const State& state, const Model& model) {
+  const double h = model.h(), c = model.sound_speed(), cfl = model.numerics.cfl;
+  double limit = cfl * h / c;
+  if (model.stepping != Stepping::implicit)
+    limit = std::min(limit, cfl * model.numerics.viscous_factor * h * h / state.max_kinematic_viscosity);
+  return limit;
+}
+
+void initialise(State& state, Work& w, const Model& model) {
+  check(model);
+  rebuild(w.pairs, state.particles, model);
+  refresh(state, w, model);
+  state.max_kinematic_viscosity = constitutive(w, state.particles, model);
+}
+
+void restore(State& state, Work& w, const Model& model) {
+  relist(w.pairs, state.particles, model);
+  w.resize(state.particles.size(), model.dim);
+}
+
+void refresh(const State& state, Work& w, const Model& model) {
+  const Particles& p = state.particles;
+  w.resize(p.size(), model.dim);
+  kinematics(w, p, model, model.corrected() ? Kinematics::corrected : Kinematics::pairs, true);
+  Particles copy;
+  copy.rho = p.rho;
+  copy.mass = p.mass;
+  copy.root = p.root;
+  constitutive(w, copy, model);
+}
+
+void step(State& state, Work& w, const Model& model) {
+  const double speed = fastest_particle(state, model);
+  double dt = step_limit(state, model);
+  if (model.stepping != Stepping::minatti2015) {
+    if (speed > 0) dt = std::min(dt, advective_cfl * model.h() / speed);
+    dt = std::min(dt, state.dt > 0 ? step_growth * state.dt : first_step * dt);
+  }
+  state.dt = dt;
+  if (model.stepping == Stepping::minatti2015) midpoint_step(state, w, model);
+  else sequential_step(state, w, model);
+  state.time += dt;
+  ++state.step;
+}
+
+}  // namespace bagnold::sph

@@ -1,0 +1,243 @@
+// Pressure and viscosity as derivatives of one discrete energy (docs/sph.md derives every line).
+#include <algorithm>
+
+#include "core/parallel.hpp"
+#include "sph/dispatch.hpp"
+#include "sph/forces.hpp"
+#include "sph/kinematics.hpp"
+#include "sph/small_tensor.hpp"
+
+namespace bagnold::sph {
+namespace {
+
+// Fields of a record of the pressure sweep.
+template <int D>
+struct PressureRecord {
+  static constexpr int area = 0, volume = 1, eta = 2, P = 3, size = 3 + D * D;  // P = p V B
+};
+// Fields of a record of the second sweep of the viscous force; the last two are seen in the frame of the parent.
+template <int D>
+struct StressRecord {
+  static constexpr int v = 0, area = D, sign = D + 1, T = D + 2, L = T + D * D, size = L + D * D;
+  static constexpr int width = D == 2 ? 16 : 32;
+};
+
+template <int D>
+auto& stress_records(Work& w) {
+  if constexpr (D == 2) return w.wide;
+  else return w.broad;
+}
+
+template <int D>
+Matrix<D> matrix_at(const std::vector<double>& a, std::int64_t i) {
+  Matrix<D> m;
+  std::copy_n(a.begin() + i * D * D, D * D, m.begin());
+  return m;
+}
+
+template <int D>
+void write_pressure_records(Work& w, std::int64_t n) {
+  using F = PressureRecord<D>;
+  w.wide.resize(w.pairs.elements(n));
+  parallel_for(n, [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    double* to = w.wide.at(k);
+    to[F::area] = w.area[i];
+    to[F::volume] = w.volume[i];
+    to[F::eta] = w.viscosity[i];
+    for (int m = 0; m < D * D; ++m) to[F::P + m] = w.pressure[i] * w.volume[i] * w.correction[i * D * D + static_cast<std::size_t>(m)];
+  });
+  fill_images(w.pairs, n, w.wide, [&](std::size_t image, const double* from, double* to) {
+    const auto &S = w.pairs.images.S[image], &R = w.pairs.images.R[image];
+    std::copy_n(from, F::P, to);
+    for (std::size_t a = 0; a < D; ++a)
+      for (std::size_t b = 0; b < D; ++b) to[F::P + a * D + b] = S[a] * R[b] * from[F::P + a * D + b];
+  });
+  std::fill_n(w.wide.at(w.pairs.elements(n) - 1), 16, 0.0);
+}
+
+// Diagonal block of m - dt A without m and dt: residual pairs, the stress of the neighbours, and the own stress where
+// neighbours are missing. Stored as upper triangle.
+template <int D>
+void store_block(Work& w, const Model& model, const Particles& p, std::size_t i, double isotropic, const Pack* pairs,
+                 double neighbours) {
+  double g2 = 0;
+  for (std::size_t a = 0; a < D; ++a) g2 += w.imbalance[a][i] * w.imbalance[a][i];
+  const double own = 2 * w.viscosity[i] * w.volume[i];
+  double* block = w.preconditioner.data() + i * (D * (D + 1) / 2);
+  for (std::size_t a = 0, m = 0; a < D; ++a)
+    for (std::size_t b = a; b < D; ++b, ++m) {
+      block[m] = lane_sum(pairs[m]) + own * isotropic * w.imbalance[a][i] * w.imbalance[b][i];
+      if (a == b) block[m] += 0.5 * (neighbours + own * g2);
+    }
+  if (model.axisymmetric) {
+    const double ir = inverse_radius(model, p.x[0][i]);
+    block[0] += own * ir * ir * (0.5 + isotropic);
+  }
+}
+
+template <int D, class Mean>
+void pressure_sweep(Work& w, const Particles& p, const Model& model, double coefficient, double isotropic) {
+  using F = PressureRecord<D>;
+  const double tiny = 1e-12 * model.h() * model.h();
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double* self = w.wide.at(k);
+    Pack force[D]{}, quartic[Quartic<D>::size]{}, block[D * (D + 1) / 2]{}, around{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[F::size], r[D];
+      gather(w.wide, j, other);
+      Pack r2{};
+      for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q], r2 += r[d] * r[d];
+      const Pack f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) force[a] += (aj * self[F::P + a * D + b] + ai * other[F::P + a * D + b]) * r[b];
+      const Pack weight = coefficient * 0.5 * (self[F::area] * other[F::volume] + other[F::area] * self[F::volume]);
+      const Pack kk = Mean::of(splat(self[F::eta]), other[F::eta]) * weight * f / (r2 + tiny);
+      w.k[q] = kk;
+      Quartic<D>::add(quartic, 0.5 * kk, r);
+      const Pack stress = 2 * other[F::eta] * other[F::volume] * ai * ai;
+      around += stress * r2;
+      for (int a = 0, m = 0; a < D; ++a)
+        for (int b = a; b < D; ++b, ++m) block[m] += (kk + stress * isotropic) * r[a] * r[b];
+    });
+    for (std::size_t d = 0; d < D; ++d) w.acceleration[d][i] = model.gravity[d] + lane_sum(force[d]) / p.mass[i];
+    if (model.axisymmetric)
+      w.acceleration[0][i] += w.pressure[i] * w.volume[i] * inverse_radius(model, p.x[0][i]) / p.mass[i];
+    for (std::size_t m = 0; m < Quartic<D>::size; ++m) w.quartic[i * Quartic<D>::size + m] = lane_sum(quartic[m]);
+    store_block<D>(w, model, p, i, isotropic, block, lane_sum(around));
+  });
+}
+
+// First sweep: L = S B and T = 2 eta V e' - (H - K:L); leaves T B and L in the stress records, hoop force in `force`.
+template <int D>
+void stress_sweep(Work& w, const Particles& p, const Model& model, double trace_factor, const Field& v, Field& force) {
+  using F = StressRecord<D>;
+  auto& records = stress_records<D>(w);
+  const std::int64_t n = p.size();
+  w.slim.resize(w.pairs.elements(n));
+  records.resize(w.pairs.elements(n));
+  parallel_for(n, [&](std::int64_t k) {
+    double* to = w.slim.at(k);
+    for (std::size_t d = 0; d < D; ++d) to[d] = v[d][static_cast<std::size_t>(k)];
+    to[D] = w.area[static_cast<std::size_t>(k)];
+  });
+  fill_images(w.pairs, n, w.slim, [&](std::size_t image, const double* from, double* to) {
+    for (std::size_t d = 0; d < D; ++d) to[d] = w.pairs.images.S[image][d] * from[d];
+    to[D] = from[D];
+  });
+  std::fill_n(w.slim.at(w.pairs.elements(n) - 1), 8, 0.0);
+  parallel_for(n, [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double* self = w.slim.at(k);
+    Pack S[D * D]{}, H[D * (D + 1) / 2]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[D + 1], r[D], dv[D], vr{};
+      gather(w.slim, j, other);
+      for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q], dv[d] = self[d] - other[d], vr += dv[d] * r[d];
+      const Pack af = other[D] * w.f[q], t = 0.5 * w.k[q] * vr;
+      for (int a = 0, m = 0; a < D; ++a) {
+        for (int b = 0; b < D; ++b) S[a * D + b] += af * dv[a] * r[b];
+        for (int b = a; b < D; ++b, ++m) H[m] += t * r[a] * r[b];
+      }
+    });
+    Matrix<D> s;
+    std::array<double, D*(D + 1) / 2> h;
+    for (std::size_t m = 0; m < s.size(); ++m) s[m] = lane_sum(S[m]);
+    for (std::size_t m = 0; m < h.size(); ++m) h[m] = lane_sum(H[m]);
+    const Matrix<D> B = matrix_at<D>(w.correction, k), L = product<D>(s, B), left = from_upper<D>(h.data()),
+                    taken = Quartic<D>::contract(w.quartic.data() + i * Quartic<D>::size, L);
+    const double ir = model.axisymmetric ? inverse_radius(model, p.x[0][i]) : 0, hoop = v[0][i] * ir;
+    double trace = hoop;
+    for (int d = 0; d < D; ++d) trace += L[d * D + d];
+    trace *= trace_factor;
+    const double twice = 2 * w.viscosity[i] * w.volume[i];
+    Matrix<D> T;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b)
+        T[a * D + b] = twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) - left[a * D + b] + taken[a * D + b];
+    const Matrix<D> TB = product<D>(T, B);
+    if (model.axisymmetric) force[0][i] = -twice * (hoop - trace) * ir;
+    double* to = records.at(k);
+    for (int d = 0; d < D; ++d) to[F::v + d] = self[d];
+    to[F::area] = self[D];
+    to[F::sign] = 1;
+    std::copy(TB.begin(), TB.end(), to + F::T);
+    std::copy(L.begin(), L.end(), to + F::L);
+  });
+  fill_images(w.pairs, n, records, [&](std::size_t image, const double* from, double* to) {
+    const auto &S = w.pairs.images.S[image], &R = w.pairs.images.R[image];
+    for (std::size_t d = 0; d < D; ++d) to[F::v + d] = S[d] * from[F::v + d];
+    to[F::area] = from[F::area];
+    to[F::sign] = R[0] * S[0] * from[F::sign];  // -1 under the no-slip floor: tangential components turn round
+    for (std::size_t a = 0; a < D; ++a)
+      for (std::size_t b = 0; b < D; ++b) {
+        to[F::T + a * D + b] = S[a] * R[b] * from[F::T + a * D + b];
+        to[F::L + a * D + b] = R[a] * R[b] * from[F::L + a * D + b];
+      }
+  });
+  std::fill_n(records.at(w.pairs.elements(n) - 1), F::width, 0.0);
+}
+
+// Second sweep: force of the stresses of both particles, and of what their linear fields miss.
+template <int D>
+void force_sweep(Work& w, const Particles& p, const Model& model, Field& force) {
+  using F = StressRecord<D>;
+  const auto& records = stress_records<D>(w);
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double* self = records.at(k);
+    Pack sum[D]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[F::size], r[D], turned[D], missed{}, missed_other{};
+      gather(records, j, other);
+      for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q];
+      for (int a = 0; a < D; ++a) {
+        const Pack dv = self[F::v + a] - other[F::v + a];
+        Pack own = dv, theirs = a == D - 1 ? dv : dv * other[F::sign];
+        for (int b = 0; b < D; ++b) {
+          own -= self[F::L + a * D + b] * r[b];
+          theirs -= other[F::L + a * D + b] * r[b];
+        }
+        missed += own * r[a];
+        missed_other += theirs * r[a];
+        turned[a] = a == D - 1 ? r[a] : r[a] * other[F::sign];
+      }
+      const Pack f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f, half_k = 0.5 * w.k[q];
+      for (int a = 0; a < D; ++a) {
+        for (int b = 0; b < D; ++b) sum[a] += (aj * self[F::T + a * D + b] + ai * other[F::T + a * D + b]) * r[b];
+        sum[a] += half_k * (missed * r[a] + missed_other * turned[a]);
+      }
+    });
+    const double hoop = model.axisymmetric ? force[0][i] : 0;
+    for (std::size_t d = 0; d < D; ++d) force[d][i] = (d == 0 ? hoop : 0) - lane_sum(sum[d]);
+  });
+}
+
+// Stress of the model: 2 eta (e - factor tr(e) 1), with bulk viscosity zeta = bulk eta: factor = 1/3 - bulk/2.
+double trace_factor(const Model& model) {
+  return 1.0 / 3 - 0.5 * std::visit([](const auto& v) { return v.bulk; }, model.viscous);
+}
+
+}  // namespace
+
+void corrected_pressure_and_coefficients(Work& w, const Particles& p, const Model& model) {
+  w.k.resize(w.pairs.index.size() / pack_size);
+  const double coefficient = std::visit([&](const auto& v) { return v.coefficient(model.dim); }, model.viscous);
+  const double isotropic = 0.5 - trace_factor(model);
+  std::visit(
+      [&](const auto& mean) {
+        using Mean = std::decay_t<decltype(mean)>;
+        if (model.dim == 2) write_pressure_records<2>(w, p.size()), pressure_sweep<2, Mean>(w, p, model, coefficient, isotropic);
+        else write_pressure_records<3>(w, p.size()), pressure_sweep<3, Mean>(w, p, model, coefficient, isotropic);
+      },
+      model.mean);
+}
+
+void corrected_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
+  const double factor = trace_factor(model);
+  if (model.dim == 2) stress_sweep<2>(w, p, model, factor, v, force), force_sweep<2>(w, p, model, force);
+  else stress_sweep<3>(w, p, model, factor, v, force), force_sweep<3>(w, p, model, force);
+}
+
+}  // namespace bagnold::sph

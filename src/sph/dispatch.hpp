@@ -1,0 +1,41 @@
+// Turns run-time choices into compile-time ones, once per sweep and outside every loop.
+#pragma once
+#include <type_traits>
+#include <utility>
+
+#include "sph/model.hpp"
+
+namespace bagnold::sph {
+
+// f(std::integral_constant<int, D>, kernel)
+template <class F>
+void dispatch(const Model& model, F&& f) {
+  std::visit(
+      [&](const auto& kernel) {
+        if (model.dim == 2) f(std::integral_constant<int, 2>{}, kernel);
+        else f(std::integral_constant<int, 3>{}, kernel);
+      },
+      model.kernel);
+}
+
+// Separation of a particle from eight others: f = -W'(r)/r, so that grad_i W = -f r.
+template <int D, class Kernel>
+struct PairShape {
+  double inv_h, slope_scale, value_scale;
+  explicit PairShape(double h) : inv_h(1 / h) {
+    double hd = 1;
+    for (int k = 0; k < D; ++k) hd *= h;
+    value_scale = Kernel::norm(D) / hd;
+    slope_scale = value_scale / (h * h);
+  }
+  template <class T>
+  T ratio(T r2) const {
+    return sqrt(r2) * inv_h;
+  }
+  template <class T>
+  T f(T R) const { return slope_scale * Kernel::slope(R); }
+  template <class T>
+  T w(T R) const { return value_scale * Kernel::value(R); }
+};
+
+}  // namespace bagnold::sph

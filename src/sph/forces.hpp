@@ -1,0 +1,20 @@
+// Pressure and viscous forces of both discretisations, behind one set of names.
+#pragma once
+#include "sph/work.hpp"
+
+namespace bagnold::sph {
+
+// acceleration = gravity + pressure (+ viscosity and artificial viscosity when `viscous`, minatti2015 operator only).
+void pair_momentum_rate(Work& work, const Particles& particles, const Model& model, bool viscous);
+
+// acceleration = gravity + pressure, the adjoint of the corrected divergence; also k, quartic and preconditioner.
+// Needs kinematics(corrected) at the present positions.
+void corrected_pressure_and_coefficients(Work& work, const Particles& particles, const Model& model);
+// k and preconditioner of the pair operator.
+void pair_coefficients(Work& work, const Particles& particles, const Model& model);
+
+// force = A v: the viscous force [N] on every particle for velocities v, linear, symmetric, negative semi-definite.
+void corrected_viscous_force(Work& work, const Particles& particles, const Model& model, const Field& v, Field& force);
+void pair_viscous_force(Work& work, const Particles& particles, const Model& model, const Field& v, Field& force);
+
+}  // namespace bagnold::sph

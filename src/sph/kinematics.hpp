@@ -1,0 +1,22 @@
+// Density rate, velocity gradient and what the neighbourhood looks like, from positions and velocities.
+#pragma once
+#include "sph/work.hpp"
+
+namespace bagnold::sph {
+
+enum class Kinematics {
+  density,     // density_rate only (first half of the midpoint step)
+  pairs,       // density_rate and gradient as printed: eqs 26, 31
+  corrected,   // M, B, L = S B, density_rate = -rho tr L; keeps the pairs' geometry
+};
+// Fills volume, area, density_rate, shear_rate; `corrected` (and `pairs` with `moments`) also coverage, concentration,
+// imbalance.
+void kinematics(Work& work, const Particles& particles, const Model& model, Kinematics what, bool moments = false);
+
+// volume = m/rho and area; call whenever rho or a position changed.
+void update_volumes(Work& work, const Particles& particles, const Model& model);
+
+// 1/r of an axisymmetric ring; particles on the axis count as a tenth of a spacing away from it.
+inline double inverse_radius(const Model& model, double r) { return 1 / std::max(r, 0.1 * model.spacing); }
+
+}  // namespace bagnold::sph

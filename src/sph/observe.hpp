@@ -1,0 +1,21 @@
+// What is measured on a state. Nothing here changes it; pressure and the like must be fresh (refresh()).
+#pragma once
+#include "sph/work.hpp"
+
+namespace bagnold::sph {
+
+double kinetic_energy(const State& state, const Model& model);
+std::array<double, 3> momentum(const State& state, const Model& model);
+double total_mass(const State& state);
+// Largest i over particles well inside the flow (coverage above 0.9): loose particles have no meaningful pressure.
+double max_inertial_number(const State& state, const Work& work, const Model& model);
+
+// How far the material reaches from the axis or the middle, particle radius dp/2 included.
+struct Front {
+  double connected = 0;  // of the largest group of particles linked over at most 1.6 dp
+  double raw = 0;        // of the farthest particle
+  double height = 0;     // of the connected group
+};
+Front find_front(const State& state, const Work& work, const Model& model);
+
+}  // namespace bagnold::sph

@@ -1,0 +1,102 @@
+// Tensors of two or three dimensions held in plain arrays, row by row.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/pack.hpp"
+
+namespace bagnold::sph {
+
+template <int D>
+using Matrix = std::array<double, D * D>;
+
+template <int D>
+inline Matrix<D> product(const Matrix<D>& a, const Matrix<D>& b) {
+  Matrix<D> c{};
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      for (int k = 0; k < D; ++k) c[i * D + j] += a[i * D + k] * b[k * D + j];
+  return c;
+}
+
+// Symmetric matrix from its upper triangle, row by row.
+template <int D>
+inline Matrix<D> from_upper(const double* upper) {
+  Matrix<D> m{};
+  for (int i = 0, q = 0; i < D; ++i)
+    for (int j = i; j < D; ++j, ++q) m[i * D + j] = m[j * D + i] = upper[q];
+  return m;
+}
+
+// Smallest eigenvalue of a symmetric matrix.
+inline double smallest_eigenvalue(const Matrix<2>& m) {
+  const double mean = 0.5 * (m[0] + m[3]), half = 0.5 * (m[0] - m[3]);
+  return mean - std::sqrt(half * half + m[1] * m[1]);
+}
+inline double smallest_eigenvalue(const Matrix<3>& m) {
+  const double q = (m[0] + m[4] + m[8]) / 3, off = m[1] * m[1] + m[2] * m[2] + m[5] * m[5];
+  const double a = m[0] - q, b = m[4] - q, c = m[8] - q;
+  const double p = std::sqrt((a * a + b * b + c * c + 2 * off) / 6);
+  if (!(p > 1e-15 * std::abs(q))) return q;
+  const double det = a * (b * c - m[5] * m[5]) - m[1] * (m[1] * c - m[5] * m[2]) + m[2] * (m[1] * m[5] - b * m[2]);
+  const double angle = std::acos(std::clamp(det / (2 * p * p * p), -1.0, 1.0)) / 3;
+  return q + 2 * p * std::cos(angle + 2 * M_PI / 3);
+}
+
+// Inverse of a matrix that has one.
+inline Matrix<2> inverse(const Matrix<2>& m) {
+  const double d = 1 / (m[0] * m[3] - m[1] * m[2]);
+  return {m[3] * d, -m[1] * d, -m[2] * d, m[0] * d};
+}
+inline Matrix<3> inverse(const Matrix<3>& m) {
+  const Matrix<3> c{m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
+                    m[5] * m[6] - m[3] * m[8], m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
+                    m[3] * m[7] - m[4] * m[6], m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
+  const double d = 1 / (m[0] * c[0] + m[1] * c[3] + m[2] * c[6]);
+  Matrix<3> r = c;
+  for (double& x : r) x *= d;
+  return r;
+}
+
+// Fully symmetric tensor of rank four: one number per monomial x^i y^j z^k, i + j + k = 4.
+template <int D>
+struct Quartic {
+  static constexpr int size = D == 2 ? 5 : 15;
+  // Position of the component with `y` indices 1 and `z` indices 2.
+  static constexpr int at(int y, int z) { return D == 2 ? y : z * (11 - z) / 2 + y; }
+  static constexpr int at(int a, int b, int c, int d) {
+    return at((a == 1) + (b == 1) + (c == 1) + (d == 1), (a == 2) + (b == 2) + (c == 2) + (d == 2));
+  }
+  // sum += weight r r r r
+  static void add(Pack* sum, const Pack& weight, const Pack (&r)[D]) {
+    if constexpr (D == 2) {
+      const Pack xx = r[0] * r[0], xz = r[0] * r[1], zz = r[1] * r[1], wx = weight * xx, wz = weight * zz;
+      sum[0] += wx * xx;
+      sum[1] += wx * xz;
+      sum[2] += wx * zz;
+      sum[3] += wz * xz;
+      sum[4] += wz * zz;
+    } else {
+      for (int z = 0, q = 0; z <= 4; ++z)
+        for (int y = 0; y + z <= 4; ++y, ++q) {
+          Pack monomial = weight;
+          for (int e = 0; e < z; ++e) monomial *= r[2];
+          for (int e = 0; e < y; ++e) monomial *= r[1];
+          for (int e = 0; e < 4 - y - z; ++e) monomial *= r[0];
+          sum[q] += monomial;
+        }
+    }
+  }
+  // K : L
+  static Matrix<D> contract(const double* K, const Matrix<D>& L) {
+    Matrix<D> c{};
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b)
+        for (int i = 0; i < D; ++i)
+          for (int j = 0; j < D; ++j) c[a * D + b] += K[at(a, b, i, j)] * L[i * D + j];
+    return c;
+  }
+};
+
+}  // namespace bagnold::sph
