@@ -50,18 +50,18 @@ template <int D, class Kernel, Kinematics what, bool moments>
 Sums<D> sum_neighbours(Work& w, const PairShape<D, Kernel>& shape, std::int64_t i) {
   constexpr bool printed = what != Kinematics::corrected, gradients = what != Kinematics::density;
   const double* self = w.slim.at(i);
-  Pack density{}, S[D * D]{}, M[D * (D + 1) / 2]{}, missing[D]{}, C{};
-  for_each_pack(w.pairs, i, [&](const std::int32_t* j, std::size_t q) {
-    Pack other[2 * D + 2], r[D], v[D];
+  Octet density{}, S[D * D]{}, M[D * (D + 1) / 2]{}, missing[D]{}, C{};
+  for_each_octet(w.pairs, i, [&](const std::int32_t* j, std::size_t q) {
+    Octet other[2 * D + 2], r[D], v[D];
     gather(w.slim, j, other);
-    Pack r2{}, vr{};
+    Octet r2{}, vr{};
     for (int d = 0; d < D; ++d) {
       r[d] = self[d] - other[d];
       v[d] = self[D + d] - other[D + d];
       r2 += r[d] * r[d];
       vr += v[d] * r[d];
     }
-    const Pack R = shape.ratio(r2), f = shape.f(R), af = other[2 * D] * f;
+    const Octet R = shape.ratio(r2), f = shape.f(R), af = other[2 * D] * f;
     if constexpr (printed) density += other[2 * D + 1] * f * vr;
     if constexpr (what == Kinematics::corrected) {
       for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
@@ -171,8 +171,8 @@ void update_volumes(Work& w, const Particles& p, const Model& model) {
 void kinematics(Work& w, const Particles& p, const Model& model, Kinematics what, bool moments) {
   update_volumes(w, p, model);
   if (what == Kinematics::corrected) {
-    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) w.r[d].resize(w.pairs.index.size() / pack_size);
-    w.f.resize(w.pairs.index.size() / pack_size);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) w.r[d].resize(w.pairs.index.size() / octet_size);
+    w.f.resize(w.pairs.index.size() / octet_size);
   }
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;

@@ -72,16 +72,16 @@ void rate_sweep(Work& w, const Particles& p, const Model& model) {
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = records.at(k);
-    Pack sum[D]{};
-    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t) {
-      Pack other[F::size], r[D], r2 = splat(tiny), vr{};
+    Octet sum[D]{};
+    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t) {
+      Octet other[F::size], r[D], r2 = splat(tiny), vr{};
       gather(records, j, other);
       for (int d = 0; d < D; ++d) {
         r[d] = self[F::x + d] - other[F::x + d];
         r2 += r[d] * r[d];
         vr += (self[F::v + d] - other[F::v + d]) * r[d];
       }
-      const Pack s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass, other + F::mass,
+      const Octet s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass, other + F::mass,
                                                          coefficient, alpha_h_c);
       for (int d = 0; d < D; ++d) sum[d] += s * r[d];
     });
@@ -118,13 +118,13 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = records.at(k);
-    Pack block[D * (D + 1) / 2]{};
-    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Pack other[F::size], r[D], r2 = splat(tiny);
+    Octet block[D * (D + 1) / 2]{};
+    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Octet other[F::size], r[D], r2 = splat(tiny);
       gather(records, j, other);
       for (int d = 0; d < D; ++d) r[d] = self[F::x + d] - other[F::x + d], r2 += r[d] * r[d];
-      const Pack volume = other[F::mass] * other[F::inv_rho] * w.volume[i];
-      const Pack kk = coefficient * Mean::of(splat(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
+      const Octet volume = other[F::mass] * other[F::inv_rho] * w.volume[i];
+      const Octet kk = coefficient * Mean::of(splat(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
       w.k[q] = kk;
       for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
       add_block<D>(block, kk, r);
@@ -159,9 +159,9 @@ void viscous_sweep(Work& w, const Particles& p, const Field& v, Field& force) {
   std::fill_n(w.slim.at(w.pairs.elements(n) - 1), 8, 0.0);
   parallel_for(n, [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
-    Pack sum[D]{};
-    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Pack other[D], vr{};
+    Octet sum[D]{};
+    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Octet other[D], vr{};
       gather(w.slim, j, other);
       for (std::size_t d = 0; d < D; ++d) vr += (w.slim.at(k)[d] - other[d]) * w.r[d][q];
       for (std::size_t d = 0; d < D; ++d) sum[d] += w.k[q] * vr * w.r[d][q];
@@ -197,8 +197,8 @@ void pair_momentum_rate(Work& w, const Particles& p, const Model& model, bool vi
 }
 
 void pair_coefficients(Work& w, const Particles& p, const Model& model) {
-  w.k.resize(w.pairs.index.size() / pack_size);
-  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) w.r[d].resize(w.pairs.index.size() / pack_size);
+  w.k.resize(w.pairs.index.size() / octet_size);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) w.r[d].resize(w.pairs.index.size() / octet_size);
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;
     write_pair_records<D>(w, p, model);

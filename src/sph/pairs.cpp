@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/pack.hpp"
+#include "core/octet.hpp"
 #include "core/parallel.hpp"
 #include "core/vec3.hpp"
 #include "neighbours/cell_grid.hpp"
@@ -118,7 +118,7 @@ void relist(Pairs& pairs, const Particles& p, const Model& model) {
     const auto i = static_cast<std::size_t>(k);
     std::int64_t count = 0;
     for_each_near(grid, i, [&](std::int32_t j) { count += near(i, j); });
-    pairs.offset[i + 1] = (count + pack_size - 1) / pack_size * pack_size;
+    pairs.offset[i + 1] = (count + octet_size - 1) / octet_size * octet_size;
   });
   for (std::size_t i = 0; i < n; ++i) pairs.offset[i + 1] += pairs.offset[i];
   pairs.index.resize(static_cast<std::size_t>(pairs.offset[n]));

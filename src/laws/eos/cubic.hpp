@@ -1,6 +1,6 @@
 // The cubic between bulk density and grain density, and its largest root.
 #pragma once
-#include "core/pack.hpp"
+#include "core/octet.hpp"
 
 namespace bagnold::laws::eos {
 
@@ -13,10 +13,10 @@ struct Cubic {
 
 // True when every lane (or the one number) of `small` does not exceed `large`.
 inline bool all_below(double small, double large) { return small <= large; }
-inline bool all_below(const Pack& small, const Pack& large) {
-  const PackMask ok = small <= large;
+inline bool all_below(const Octet& small, const Octet& large) {
+  const OctetMask ok = small <= large;
   std::int64_t both = -1;
-  for (int k = 0; k < pack_size; ++k) both &= ok[k];
+  for (int k = 0; k < octet_size; ++k) both &= ok[k];
   return both != 0;
 }
 

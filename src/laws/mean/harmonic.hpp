@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/fields.hpp"
-#include "core/pack.hpp"
+#include "core/octet.hpp"
 
 namespace bagnold::laws::mean {
 

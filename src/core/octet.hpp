@@ -1,5 +1,5 @@
-// Eight doubles that move together: the width of one AVX-512 register, split by the compiler where there is less.
-// Laws are templates over their number type, so the same formula serves one double (tests, fits) and a Pack (loops).
+// Eight doubles that move together as one plain vector value: what the continuum loops load, transpose and sum. The width
+// is one AVX-512 register; the compiler splits it where there is less. Laws are templates over their number type.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -13,37 +13,37 @@
 
 namespace bagnold {
 
-using Pack = double __attribute__((vector_size(64)));
-using PackMask = std::int64_t __attribute__((vector_size(64)));
-inline constexpr int pack_size = 8;
+using Octet = double __attribute__((vector_size(64)));
+using OctetMask = std::int64_t __attribute__((vector_size(64)));
+inline constexpr int octet_size = 8;
 
-inline Pack splat(double a) { return Pack{a, a, a, a, a, a, a, a}; }
-inline Pack load_pack(const double* from) {
-  Pack p;
+inline Octet splat(double a) { return Octet{a, a, a, a, a, a, a, a}; }
+inline Octet load_octet(const double* from) {
+  Octet p;
   std::memcpy(&p, from, sizeof p);
   return p;
 }
-inline void store_pack(double* to, const Pack& p) { std::memcpy(to, &p, sizeof p); }
+inline void store_octet(double* to, const Octet& p) { std::memcpy(to, &p, sizeof p); }
 
 // Sum of the lanes, always in the same order.
-inline double lane_sum(const Pack& p) { return ((p[0] + p[4]) + (p[1] + p[5])) + ((p[2] + p[6]) + (p[3] + p[7])); }
-inline double lane_max(const Pack& p) {
+inline double lane_sum(const Octet& p) { return ((p[0] + p[4]) + (p[1] + p[5])) + ((p[2] + p[6]) + (p[3] + p[7])); }
+inline double lane_max(const Octet& p) {
   double m = p[0];
-  for (int k = 1; k < pack_size; ++k) m = p[k] > m ? p[k] : m;
+  for (int k = 1; k < octet_size; ++k) m = p[k] > m ? p[k] : m;
   return m;
 }
 
-inline Pack sqrt(const Pack& a) {
+inline Octet sqrt(const Octet& a) {
 #if defined(__AVX512F__)
-  return reinterpret_cast<Pack>(_mm512_maskz_sqrt_pd(0xff, reinterpret_cast<__m512d>(a)));
+  return reinterpret_cast<Octet>(_mm512_maskz_sqrt_pd(0xff, reinterpret_cast<__m512d>(a)));
 #else
-  Pack r;
-  for (int k = 0; k < pack_size; ++k) r[k] = std::sqrt(a[k]);
+  Octet r;
+  for (int k = 0; k < octet_size; ++k) r[k] = std::sqrt(a[k]);
   return r;
 #endif
 }
 
-// The larger and the smaller of two numbers, for double and Pack alike.
+// The larger and the smaller of two numbers, for double and Octet alike.
 template <class T>
 inline T larger(const T& a, const T& b) { return a > b ? a : b; }
 template <class T>
@@ -57,7 +57,7 @@ inline T constant(double a) {
 }
 
 // exp(x) for -700 <= x <= 0, relative error below 4e-16: x = n ln 2 + r, |r| <= ln 2 / 2, Taylor series of exp(r).
-// One formula for double and Pack, so both give the same bits.
+// One formula for double and Octet, so both give the same bits.
 template <class T>
 inline T exp_negative(T x) {
   constexpr double ln2_hi = 6.93147180369123816490e-01, ln2_lo = 1.90821492927058770002e-10;
@@ -70,7 +70,7 @@ inline T exp_negative(T x) {
   for (const double c : {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040, 1.0 / 720,
                          1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0})
     series = series * r + c;
-  using Bits = std::conditional_t<sizeof(T) == sizeof(double), std::int64_t, PackMask>;
+  using Bits = std::conditional_t<sizeof(T) == sizeof(double), std::int64_t, OctetMask>;
   Bits bits, power;
   std::memcpy(&bits, &shifted, sizeof bits);
   std::memcpy(&power, &series, sizeof power);
@@ -88,8 +88,8 @@ inline T one_minus_exp_over(T x) {
 }
 
 // Transposes eight packs: out[f][k] = in[k][f].
-inline void transpose(Pack (&r)[pack_size]) {
-  Pack a[8], b[8];
+inline void transpose(Octet (&r)[octet_size]) {
+  Octet a[8], b[8];
   for (int k = 0; k < 4; ++k) {
     a[2 * k] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
     a[2 * k + 1] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15);

@@ -1,0 +1,219 @@
+// Whole runs, short: rest, flow, restart, threads, periodicity.
+#include <cstring>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "helpers.hpp"
+#include "sph/observe.hpp"
+
+namespace bagnold::sph::test {
+namespace {
+
+struct Simulation {
+  Model model;
+  State state;
+  Work work;
+};
+
+Simulation start(const scenario::InclinedPlane& plane, Model model) {
+  Simulation r{std::move(model), {}, {}};
+  set_geometry(plane, r.model);
+  r.state.particles = make_particles(plane, r.model);
+  initialise(r.state, r.work, r.model);
+  return r;
+}
+Simulation start(const scenario::Column& column, scenario::ColumnGeometry geometry, Model model) {
+  Simulation r{std::move(model), {}, {}};
+  set_geometry(column, geometry, r.model);
+  r.state.particles = make_particles(column, geometry, r.model);
+  initialise(r.state, r.work, r.model);
+  return r;
+}
+void advance(Simulation& r, double until) {
+  while (r.state.time < until) step(r.state, r.work, r.model);
+}
+void steps(Simulation& r, int count) {
+  for (int k = 0; k < count; ++k) step(r.state, r.work, r.model);
+}
+
+std::vector<double> all_numbers(State& s) {
+  std::vector<double> numbers;
+  for (const NamedArray& a : named_arrays(s))
+    std::visit(
+        [&](auto* array) {
+          using T = std::remove_pointer_t<decltype(array)>;
+          if constexpr (std::is_same_v<T, double>) numbers.push_back(*array);
+          else if constexpr (std::is_same_v<T, std::vector<double>>) numbers.insert(numbers.end(), array->begin(), array->end());
+        },
+        a.array);
+  return numbers;
+}
+bool same_bits(State& a, State& b) {
+  const auto x = all_numbers(a), y = all_numbers(b);
+  return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
+}
+
+Model improved(Model m) {
+  improve(m);
+  return m;
+}
+const scenario::InclinedPlane small_plane{.angle_deg = 25, .height = 0.05, .length = 0.05, .spacing = 5e-3};
+const scenario::Column small_column{.radius = 0.03, .height = 0.03, .spacing = 3e-3};
+
+TEST(Rest, TankBelowTheFrictionAngleHoldsHydrostaticPressure) {
+  for (const bool better : {false, true}) {
+    Simulation r = start(scenario::InclinedPlane{.angle_deg = 0, .height = 0.05, .length = 0.05, .spacing = 5e-3},
+                  better ? improved(incline_model()) : incline_model());
+    advance(r, 0.2);
+    refresh(r.state, r.work, r.model);
+    const Particles& p = r.state.particles;
+    double error = 0, scale = 0, speed = 0;
+    for (std::size_t i = 0; i < p.mass.size(); ++i) {
+      const double exact = 0.6 * 800 * 9.81 * (0.05 - p.x[1][i]);
+      error += (r.work.pressure[i] - exact) * (r.work.pressure[i] - exact);
+      scale += exact * exact;
+      speed = std::max(speed, std::hypot(p.v[0][i], p.v[1][i]));
+    }
+    EXPECT_LT(std::sqrt(error / scale), better ? 0.03 : 0.08) << better;
+    EXPECT_LT(speed, 5e-3) << better;  // the pair model never quite stops settling at the surface
+  }
+}
+
+TEST(Flow, ImprovedInclineFollowsTheTransient) {
+  const scenario::InclinedPlane plane{.angle_deg = 25, .height = 0.05, .length = 0.03, .spacing = 5e-3};
+  Simulation r = start(plane, improved(incline_model()));
+  advance(r, 1.0);
+  const auto exact = transient_flow(plane, r.model, plane.height, 100, {r.state.time}).front();
+  const Particles& p = r.state.particles;
+  double error = 0, scale = 0;
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    const double u = exact[static_cast<std::size_t>(std::min(99.0, p.x[1][i] / plane.height * 100))];
+    error += (p.v[0][i] - u) * (p.v[0][i] - u);
+    scale += u * u;
+  }
+  EXPECT_LT(std::sqrt(error / scale), 0.04);
+}
+
+TEST(Flow, TransientTendsToTheSteadyProfile) {
+  Model m = incline_model();
+  const scenario::InclinedPlane plane;
+  set_geometry(plane, m);
+  const auto steady = steady_flow(plane, m);
+  EXPECT_NEAR(steady.u_surface, 1.281, 1e-3);
+  const auto u = transient_flow(plane, m, plane.height, 100, {30}).front();
+  for (std::size_t k = 0; k < 100; ++k)
+    EXPECT_NEAR(u[k], steady.velocity((static_cast<double>(k) + 0.5) * 1e-3), 0.01 * steady.u_surface);
+}
+
+TEST(Exactness, SameBitsWhateverTheThreadsAndAfterRestart) {
+  for (const int which : {0, 1, 2, 3}) {
+    const auto fresh = [&] {
+      if (which == 0) return start(small_plane, incline_model());
+      if (which == 1) return start(small_plane, improved(incline_model()));
+      if (which == 2) return start(small_column, scenario::ColumnGeometry::axisymmetric, improved(Model{}));
+      return start(scenario::Column{.radius = 0.012, .height = 0.012, .spacing = 3e-3}, scenario::ColumnGeometry::cylinder, improved(Model{}));
+    };
+    set_threads(1);
+    Simulation one = fresh();
+    steps(one, 30);
+    set_threads(2);
+    Simulation two = fresh();
+    steps(two, 18);
+    Simulation resumed{two.model, two.state, {}};  // the state arrays are all that is copied
+    restore(resumed.state, resumed.work, resumed.model);
+    steps(two, 12);
+    steps(resumed, 12);
+    EXPECT_TRUE(same_bits(one.state, two.state)) << which;
+    EXPECT_TRUE(same_bits(one.state, resumed.state)) << which;
+    const State before = one.state;
+    refresh(one.state, one.work, one.model);  // looking changes nothing
+    State copy = before;
+    EXPECT_TRUE(same_bits(one.state, copy)) << which;
+    steps(one, 1);
+    steps(two, 1);
+    EXPECT_TRUE(same_bits(one.state, two.state)) << which;
+    set_threads(1);
+  }
+}
+
+TEST(Exactness, PeriodicShiftByOneCellChangesNothing) {
+  Simulation a = start(small_plane, incline_model()), b = a;
+  for (double& x : b.state.particles.x[0]) x += 5e-3;
+  b.work.pairs = {};
+  steps(a, 300);
+  steps(b, 300);
+  std::vector<double> u(a.state.particles.mass.size()), w = u;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[static_cast<std::size_t>(a.state.particles.id[i])] = a.state.particles.v[0][i];
+    w[static_cast<std::size_t>(b.state.particles.id[i])] = b.state.particles.v[0][i];
+  }
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], w[i], 1e-9);
+  for (const double x : b.state.particles.x[0]) EXPECT_TRUE(x > -5e-3 && x < 0.055);
+}
+
+TEST(Conservation, FreeBlockKeepsMomentumThroughSteps) {
+  for (const bool corrected : {false, true}) {
+    Model m = free_model(2, corrected);
+    m.spacing = 3e-3;
+    Simulation r{m, block(m, 10, 0.3, 0), {}};
+    Particles& p = r.state.particles;
+    for (auto& x : p.x)
+      for (double& c : x) c *= m.spacing;
+    for (std::size_t i = 0; i < p.mass.size(); ++i) {
+      p.mass[i] *= m.spacing * m.spacing;
+      p.v[0][i] = random_unit(i, 1) - 0.3;
+      p.v[1][i] = random_unit(i, 2) - 0.8;
+    }
+    initialise(r.state, r.work, m);
+    const auto before = momentum(r.state, m);
+    const double angular = [&] {
+      double L = 0;
+      for (std::size_t i = 0; i < p.mass.size(); ++i) L += p.mass[i] * (p.x[0][i] * p.v[1][i] - p.x[1][i] * p.v[0][i]);
+      return L;
+    }();
+    steps(r, 100);
+    const auto after = momentum(r.state, m);
+    double L = 0;
+    for (std::size_t i = 0; i < p.mass.size(); ++i) L += p.mass[i] * (p.x[0][i] * p.v[1][i] - p.x[1][i] * p.v[0][i]);
+    for (std::size_t d = 0; d < 2; ++d) EXPECT_NEAR(after[d] / before[d], 1, 1e-11) << corrected;
+    if (!corrected) {
+      EXPECT_NEAR(L / angular, 1, 0.05);  // the scheme is second order; its forces have no torque
+    }
+    EXPECT_NEAR(total_mass(r.state), 100 * 1600 * m.spacing * m.spacing, 1e-12);
+  }
+}
+
+TEST(Implicit, AgreesWithExplicitOnACollapse) {
+  Model implicit = improved(Model{}), explicit_euler = implicit;
+  explicit_euler.stepping = Stepping::explicit_euler;
+  explicit_euler.numerics.cfl = 0.4;
+  Simulation a = start(small_column, scenario::ColumnGeometry::planar, implicit), b = start(small_column, scenario::ColumnGeometry::planar, explicit_euler);
+  advance(a, 0.06);
+  advance(b, 0.06);
+  const Front fa = find_front(a.state, a.work, a.model), fb = find_front(b.state, b.work, b.model);
+  EXPECT_NEAR(fa.connected / fb.connected, 1, 0.03);
+  EXPECT_GT(fa.connected, 0.0315);
+}
+
+TEST(Implicit, RefusesToGoOnWithoutConvergence) {
+  Model m = improved(incline_model());
+  m.numerics.cg_max_iterations = 1;
+  m.numerics.cg_tolerance = 1e-12;
+  Simulation r = start(small_plane, m);
+  EXPECT_THROW(steps(r, 50), NumericalError);
+}
+
+TEST(Choices, ThatDoNotFitAreRefused) {
+  Model m = incline_model();
+  m.axisymmetric = true;
+  EXPECT_THROW(check(m), UnphysicalError);
+  m = improved(incline_model());
+  m.stepping = Stepping::minatti2015;
+  EXPECT_THROW(check(m), UnphysicalError);
+  m = incline_model();
+  m.material.rheology = laws::rheology::MuI{30, 20, 0.3};
+  EXPECT_THROW(check(m), UnphysicalError);
+}
+
+}  // namespace
+}  // namespace bagnold::sph::test
