@@ -10,6 +10,7 @@ std::unique_ptr<Model> make_model(config::Case& input) {
   static const std::map<std::string, std::unique_ptr<Model> (*)(config::Case&)> models = {
       {"dem", make_dem},
       {"shallow", make_shallow},
+      {"sph", make_sph},
   };
   std::vector<std::string> names;
   for (const auto& [name, make] : models) names.push_back(name);

@@ -71,5 +71,6 @@ class Model {
 std::unique_ptr<Model> make_model(config::Case& input);
 std::unique_ptr<Model> make_dem(config::Case& input);
 std::unique_ptr<Model> make_shallow(config::Case& input);
+std::unique_ptr<Model> make_sph(config::Case& input);
 
 }  // namespace bagnold::app

@@ -8,6 +8,7 @@ std::vector<Topic> all_topics() {
   std::vector<Topic> topics;
   add_dem_topics(topics);
   add_shallow_topics(topics);
+  add_sph_topics(topics);
   topics.push_back(topic<OutputSettings>("section of every case"));
   return topics;
 }

@@ -26,5 +26,6 @@ void add_registry(std::vector<Topic>& topics, std::string_view family) {
 std::vector<Topic> all_topics();
 void add_dem_topics(std::vector<Topic>& topics);
 void add_shallow_topics(std::vector<Topic>& topics);
+void add_sph_topics(std::vector<Topic>& topics);
 
 }  // namespace bagnold::app

@@ -22,7 +22,7 @@ Simulation start(const scenario::InclinedPlane& plane, Model model) {
   initialise(r.state, r.work, r.model);
   return r;
 }
-Simulation start(const scenario::Column& column, scenario::ColumnGeometry geometry, Model model) {
+Simulation start(const scenario::ContinuumColumn& column, scenario::ColumnGeometry geometry, Model model) {
   Simulation r{std::move(model), {}, {}};
   set_geometry(column, geometry, r.model);
   r.state.particles = make_particles(column, geometry, r.model);
@@ -58,7 +58,7 @@ Model improved(Model m) {
   return m;
 }
 const scenario::InclinedPlane small_plane{.angle_deg = 25, .height = 0.05, .length = 0.05, .spacing = 5e-3};
-const scenario::Column small_column{.radius = 0.03, .height = 0.03, .spacing = 3e-3};
+const scenario::ContinuumColumn small_column{.radius = 0.03, .height = 0.03, .spacing = 3e-3};
 
 TEST(Rest, TankBelowTheFrictionAngleHoldsHydrostaticPressure) {
   for (const bool better : {false, true}) {
@@ -111,7 +111,7 @@ TEST(Exactness, SameBitsWhateverTheThreadsAndAfterRestart) {
       if (which == 0) return start(small_plane, incline_model());
       if (which == 1) return start(small_plane, improved(incline_model()));
       if (which == 2) return start(small_column, scenario::ColumnGeometry::axisymmetric, improved(Model{}));
-      return start(scenario::Column{.radius = 0.012, .height = 0.012, .spacing = 3e-3}, scenario::ColumnGeometry::cylinder, improved(Model{}));
+      return start(scenario::ContinuumColumn{.radius = 0.012, .height = 0.012, .spacing = 3e-3}, scenario::ColumnGeometry::cylinder, improved(Model{}));
     };
     set_threads(1);
     Simulation one = fresh();

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/random.hpp"
-#include "scenario/column.hpp"
+#include "scenario/continuum_column.hpp"
 #include "scenario/inclined_plane.hpp"
 #include "sph/algorithm.hpp"
 

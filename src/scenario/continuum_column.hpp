@@ -9,19 +9,19 @@ namespace bagnold::scenario {
 
 enum class ColumnGeometry { planar, axisymmetric, cylinder };  // full width; r-z; 3D
 
-struct Column {
+struct ContinuumColumn {
   double radius = 0.0972, height = 0.0875, spacing = 3.02e-3;
   static constexpr auto fields() {
-    using S = Column;
+    using S = ContinuumColumn;
     return std::tuple{field("radius", "m", "r0, half the width of a planar column", &S::radius, positive()),
                       field("height", "m", "H0", &S::height, positive()),
                       field("spacing", "m", "dp, distance of particles", &S::spacing, positive())};
   }
 };
 
-void set_geometry(const Column& column, ColumnGeometry geometry, sph::Model& model);
+void set_geometry(const ContinuumColumn& column, ColumnGeometry geometry, sph::Model& model);
 // A square or cubic lattice at rest, density in hydrostatic equilibrium.
-sph::Particles make_particles(const Column& column, ColumnGeometry geometry, const sph::Model& model);
+sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geometry, const sph::Model& model);
 
 // (r1 - r0)/r0 of the experiments: 1.24 a, 1.6 a^1/2 axisymmetric (Lube et al. 2004); 1.2 a, 1.9 a^2/3 planar (2005).
 double measured_runout(double aspect_ratio, ColumnGeometry geometry);

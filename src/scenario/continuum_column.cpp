@@ -1,11 +1,11 @@
-#include "scenario/column.hpp"
+#include "scenario/continuum_column.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace bagnold::scenario {
 
-void set_geometry(const Column& column, ColumnGeometry geometry, sph::Model& model) {
+void set_geometry(const ContinuumColumn& column, ColumnGeometry geometry, sph::Model& model) {
   model.dim = geometry == ColumnGeometry::cylinder ? 3 : 2;
   model.axisymmetric = geometry == ColumnGeometry::axisymmetric;
   model.floor = true;
@@ -15,7 +15,7 @@ void set_geometry(const Column& column, ColumnGeometry geometry, sph::Model& mod
   model.gravity[static_cast<std::size_t>(model.vertical())] = -9.81;
 }
 
-sph::Particles make_particles(const Column& column, ColumnGeometry geometry, const sph::Model& model) {
+sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geometry, const sph::Model& model) {
   const double dp = column.spacing;
   const auto up = std::max<std::int64_t>(1, std::llround(column.height / dp)), out = std::max<std::int64_t>(1, std::llround(column.radius / dp));
   std::vector<std::array<double, 2>> base;  // horizontal positions

@@ -1,0 +1,211 @@
+// The continuum model as the driver sees it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/model.hpp"
+#include "app/signals.hpp"
+#include "app/sph_input.hpp"
+#include "io/csv.hpp"
+#include "io/hdf5.hpp"
+#include "io/vtk.hpp"
+#include "sph/constitutive.hpp"
+#include "sph/observe.hpp"
+
+namespace bagnold::app {
+namespace {
+
+constexpr double steady_rate = 1e-3;  // relative change of the mean velocity in a second below which a flow is steady
+
+class SphModel final : public Model {
+ public:
+  explicit SphModel(SphInput input) : in_(std::move(input)) {
+    state_.particles = on_plane() ? make_particles(in_.plane, in_.model) : make_particles(in_.column, in_.geometry, in_.model);
+    initialise(state_, work_, in_.model);
+  }
+
+  std::string_view scenario() const override { return in_.scenario; }
+  double time() const override { return state_.time; }
+  double end_time() const override { return in_.end; }
+  std::int64_t step() const override { return state_.step; }
+  double element_steps() const override { return particle_steps_; }
+
+  void advance(double until) override {
+    while (state_.time < until && !stop_requested()) {
+      sph::step(state_, work_, in_.model);
+      particle_steps_ += static_cast<double>(state_.particles.size());
+    }
+  }
+
+  std::vector<NamedArray> state() override {
+    auto arrays = named_arrays(state_);
+    for (NamedArray& a : arrays) a.name = "sph/" + a.name;
+    arrays.push_back({"mean_velocity", &last_mean_});
+    arrays.push_back({"mean_velocity_time", &last_time_});
+    arrays.push_back({"steady_time", &steady_time_});
+    arrays.push_back({"max_inertial_number", &max_i_});
+    return arrays;
+  }
+  void restored() override { restore(state_, work_, in_.model); }
+
+  std::vector<io::Column> series_columns() const override {
+    if (on_plane())
+      return {{"t", "s", "time"}, {"dt", "s", "step"}, {"kinetic_energy", "J/m", "sum m v^2/2"}, {"u_mean", "m/s", "mean velocity down the slope"},
+              {"u_max", "m/s", "fastest particle"}, {"max_inertial_number", "", "largest i inside the flow so far"}};
+    return {{"t", "s", "time"}, {"dt", "s", "step"}, {"kinetic_energy", "J", "sum m v^2/2 (J/m planar)"},
+            {"front", "m", "reach of the connected material"}, {"front_raw", "m", "reach of the farthest particle"},
+            {"height", "m", "of the connected material"}, {"max_inertial_number", "", "largest i inside the flow so far"}};
+  }
+  std::vector<double> series_row() override {
+    refresh(state_, work_, in_.model);
+    max_i_ = std::max(max_i_, max_inertial_number(state_, work_, in_.model));
+    const double energy = kinetic_energy(state_, in_.model);
+    if (on_plane()) {
+      const double mean = mean_velocity();
+      if (steady_time_ == 0 && state_.time > last_time_ && mean > 0 &&
+          std::abs(mean - last_mean_) < steady_rate * mean * (state_.time - last_time_))
+        steady_time_ = state_.time;
+      last_mean_ = mean;
+      last_time_ = state_.time;
+      const auto& u = state_.particles.v[0];
+      return {state_.time, state_.dt, energy, mean, *std::max_element(u.begin(), u.end()), max_i_};
+    }
+    const sph::Front front = find_front(state_, work_, in_.model);
+    return {state_.time, state_.dt, energy, front.connected, front.raw, front.height, max_i_};
+  }
+
+  std::string progress() override {
+    if (on_plane()) return fmt::format("u {:.3g} m/s", mean_velocity());
+    const sph::Front front = find_front(state_, work_, in_.model);
+    return fmt::format("(r - r0)/r0 {:.3f}", front.connected / in_.column.radius - 1);
+  }
+
+  void write_snapshot(io::H5File& file, const std::string& group) override {
+    const Points p = points();
+    file.write(group + "/x", p.x);
+    file.write(group + "/v", p.v);
+    file.write(group + "/rho", state_.particles.rho);
+    file.write(group + "/p", work_.pressure);
+    file.write(group + "/eta", work_.viscosity);
+    file.write(group + "/id", state_.particles.id);
+    file.attribute(group, "t", state_.time);
+  }
+
+  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory, int number) override {
+    const Points p = points();
+    const std::string particles = fmt::format("particles_{:05d}.vtp", number);
+    io::write_vtp_points(directory / particles, p.x,
+                         {{"id", std::span<const std::int64_t>(state_.particles.id)}, {"v", std::span<const Vec3>(p.v)},
+                          {"speed", std::span<const double>(p.speed)}, {"p", std::span<const double>(work_.pressure)},
+                          {"rho", std::span<const double>(state_.particles.rho)}, {"i", std::span<const double>(p.i)},
+                          {"eta", std::span<const double>(work_.viscosity)}});
+    return {{"particles", particles}};
+  }
+
+  void write_results(const std::filesystem::path& directory) override {
+    if (!on_plane()) return;
+    refresh(state_, work_, in_.model);
+    const auto flow = steady_flow(in_.plane, in_.model);
+    const auto rows = static_cast<std::size_t>(std::max(1L, std::lround(in_.plane.height / in_.plane.spacing)));
+    std::vector<std::vector<double>> cells(6, std::vector<double>(rows, NAN));
+    std::vector<double> count(rows, 0.0), z(rows, 0.0), u(rows, 0.0), p(rows, 0.0), rho(rows, 0.0);
+    const sph::Particles& q = state_.particles;
+    for (std::size_t i = 0; i < q.mass.size(); ++i) {
+      const auto row = std::min(rows - 1, static_cast<std::size_t>(q.x[1][i] / in_.plane.height * static_cast<double>(rows)));
+      count[row] += 1, z[row] += q.x[1][i], u[row] += q.v[0][i], p[row] += work_.pressure[i], rho[row] += q.rho[i];
+    }
+    for (std::size_t r = 0; r < rows; ++r) {
+      if (count[r] == 0) continue;
+      const double height = z[r] / count[r];
+      const double values[] = {height, u[r] / count[r], flow.velocity(height), p[r] / count[r],
+                               flow.pressure(height, in_.model.grains().grain_density), rho[r] / count[r]};
+      for (std::size_t c = 0; c < 6; ++c) cells[c][r] = values[c];
+    }
+    io::write_csv(directory / "profile.csv",
+                  {{"z", "m", "height over the base"}, {"u_x", "m/s", "velocity down the slope"}, {"u_x_exact", "m/s", "eq. 56"},
+                   {"p", "Pa", "pressure"}, {"p_exact", "Pa", "hydrostatic"}, {"rho", "kg/m^3", "bulk density"}},
+                  cells, io::CsvHeader::names_and_units);
+  }
+
+  void add_summary(nlohmann::ordered_json& summary, double wall_s) override {
+    refresh(state_, work_, in_.model);
+    const double max_i = std::max(max_i_, max_inertial_number(state_, work_, in_.model));
+    summary["particles"] = state_.particles.size();
+    summary["particle_steps_per_s"] = wall_s > 0 ? particle_steps_ / wall_s : NAN;
+    summary["max_inertial_number"] = max_i;
+    if (on_plane()) {
+      const auto flow = steady_flow(in_.plane, in_.model);
+      double error = 0, scale = 0, top = 0, surface = 0, p_error = 0, p_scale = 0;
+      const sph::Particles& p = state_.particles;
+      for (std::size_t i = 0; i < p.mass.size(); ++i) {
+        const double z = p.x[1][i], u = flow.velocity(z), exact = flow.pressure(z, in_.model.grains().grain_density);
+        error += (p.v[0][i] - u) * (p.v[0][i] - u), scale += u * u;
+        p_error += (work_.pressure[i] - exact) * (work_.pressure[i] - exact), p_scale += exact * exact;
+        if (z > in_.plane.height - 1.5 * in_.plane.spacing) surface += p.v[0][i], top += 1;
+      }
+      summary["profile_error_l2"] = scale > 0 ? std::sqrt(error / scale) : NAN;
+      summary["pressure_error_l2"] = std::sqrt(p_error / p_scale);
+      summary["u_surface"] = top > 0 ? surface / top : NAN;
+      summary["u_surface_exact"] = flow.u_surface;
+      summary["steady_time"] = steady_time_ > 0 ? steady_time_ : NAN;
+      return;
+    }
+    const sph::Front front = find_front(state_, work_, in_.model);
+    const double aspect = in_.column.height / in_.column.radius;
+    summary["aspect_ratio"] = aspect;
+    summary["r0"] = in_.column.radius;
+    summary["r_final"] = front.connected;
+    summary["r_final_raw"] = front.raw;
+    summary["runout"] = front.connected / in_.column.radius - 1;
+    summary["runout_experiment"] = scenario::measured_runout(aspect, in_.geometry);
+    summary["height_final"] = front.height;
+  }
+
+  std::vector<Derived> derived() override {
+    const sph::Model& m = in_.model;
+    return {{"particles", fmt::format("{}", state_.particles.size()), "number of particles"},
+            {"smoothing length", fmt::format("{:.4g} m", m.h()), "h"},
+            {"sound speed", fmt::format("{:.4g} m/s", m.sound_speed()), "c = 1/sqrt(Kt phi_max rho_s0)"},
+            {"Mach number", fmt::format("{:.3g}", std::sqrt(9.81 * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
+             "sqrt(g H)/c; 0.1 or less keeps compression small"},
+            {"largest viscosity over density", fmt::format("{:.4g} m^2/s", state_.max_kinematic_viscosity), "at the start"},
+            {"largest step", fmt::format("{:.3g} s", step_limit(state_, m)), "eq. 39; sound only when implicit"}};
+  }
+
+ private:
+  struct Points {
+    std::vector<Vec3> x, v;
+    std::vector<double> speed, i;
+  };
+  bool on_plane() const { return in_.scenario == "inclined_plane"; }
+  double mean_velocity() const { return momentum(state_, in_.model)[0] / total_mass(state_); }
+  // Fresh fields and three-dimensional positions; an infinite inertial number (no pressure) is written as NaN.
+  Points points() {
+    refresh(state_, work_, in_.model);
+    const sph::Particles& p = state_.particles;
+    Points out;
+    for (std::size_t i = 0; i < p.mass.size(); ++i) {
+      const auto vector = [&](const sph::Field& f) { return in_.model.dim == 2 ? Vec3{f[0][i], 0, f[1][i]} : Vec3{f[0][i], f[1][i], f[2][i]}; };
+      out.x.push_back(vector(p.x));
+      out.v.push_back(vector(p.v));
+      out.speed.push_back(norm(out.v.back()));
+      const double number = inertial_number(in_.model, work_.shear_rate[i], p.root[i]);
+      out.i.push_back(std::isfinite(number) ? number : NAN);
+    }
+    return out;
+  }
+
+  SphInput in_;
+  sph::State state_;
+  sph::Work work_;
+  double particle_steps_ = 0;
+  double last_mean_ = 0, last_time_ = 0, steady_time_ = 0, max_i_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_sph(config::Case& input) { return std::make_unique<SphModel>(read_sph(input)); }
+
+}  // namespace bagnold::app

@@ -1,0 +1,59 @@
+#include "app/sph_input.hpp"
+
+#include "app/topics.hpp"
+
+namespace bagnold::app {
+namespace {
+
+sph::Material read_material(const config::Section& section) {
+  sph::Material m;
+  m.grain_diameter = section.get<double>("grain_diameter", 0.32e-3, positive(), "m");
+  m.rheology = section.read_law<laws::Rheologies>("friction", "minatti2015");
+  m.dilatancy = section.read_law<laws::Dilatancies>("dilatancy", "minatti2015");
+  m.eos = section.read_law<laws::GrainEos>("eos", "minatti2015");
+  m.regularisation = section.read_law<laws::Regularisations>("regularisation", "minatti2015");
+  return m;
+}
+
+}  // namespace
+
+SphInput read_sph(config::Case& input) {
+  const config::Section root = input.root(), scene = root.child("scenario"), numerics = root.child("numerics");
+  SphInput in;
+  in.model.material = read_material(root.child("material"));
+  in.model.numerics = numerics.read<sph::Numerics>();
+  in.model.kernel = numerics.read_law<laws::SphKernels>("kernel", "minatti2015");
+  in.model.viscous = numerics.read_law<laws::ViscousOperators>("operator", "minatti2015");
+  in.model.mean = numerics.read_law<laws::ViscosityMeans>("mean", "minatti2015");
+  const std::string stepping =
+      numerics.choose("stepping", in.model.corrected() ? "implicit" : "minatti2015", {"minatti2015", "implicit", "explicit_euler"});
+  in.model.stepping = stepping == "implicit" ? sph::Stepping::implicit
+                      : stepping == "explicit_euler" ? sph::Stepping::explicit_euler
+                                                     : sph::Stepping::minatti2015;
+  in.scenario = scene.choose("kind", std::nullopt, {"inclined_plane", "column"});
+  if (in.scenario == "inclined_plane") {
+    in.plane = scene.read<scenario::InclinedPlane>();
+    set_geometry(in.plane, in.model);
+  } else {
+    in.column = scene.read<scenario::ContinuumColumn>();
+    const std::string shape = scene.choose("geometry", "planar", {"planar", "axisymmetric", "cylinder"});
+    in.geometry = shape == "planar" ? scenario::ColumnGeometry::planar
+                  : shape == "axisymmetric" ? scenario::ColumnGeometry::axisymmetric
+                                            : scenario::ColumnGeometry::cylinder;
+    set_geometry(in.column, in.geometry, in.model);
+  }
+  in.end = root.child("time").get<double>("end", std::nullopt, positive(), "s");
+  return in;
+}
+
+void add_sph_topics(std::vector<Topic>& topics) {
+  add_registry<laws::Rheologies>(topics, "friction of the continuum (material.friction)");
+  add_registry<laws::Dilatancies>(topics, "volume fraction of the continuum (material.dilatancy)");
+  add_registry<laws::GrainEos>(topics, "pressure of the grains (material.eos)");
+  add_registry<laws::Regularisations>(topics, "viscosity at rest (material.regularisation)");
+  add_registry<laws::SphKernels>(topics, "smoothing kernel (numerics.kernel)");
+  add_registry<laws::ViscousOperators>(topics, "pressure and viscous forces (numerics.operator)");
+  add_registry<laws::ViscosityMeans>(topics, "mean viscosity of two particles (numerics.mean)");
+}
+
+}  // namespace bagnold::app
