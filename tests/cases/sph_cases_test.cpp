@@ -1,0 +1,45 @@
+// Every case of the continuum model, coarser and shorter, asserting a number.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/json.hpp"
+#include "support/program.hpp"
+
+namespace bagnold::test {
+namespace {
+
+nlohmann::json run_continuum(const std::string& name, const std::string& set) {
+  const Scratch scratch;
+  const Outcome outcome = bagnold(scratch, "run '" + case_file(name) + "' -o out --quiet " + set);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  return io::read_json(scratch / "out" / "summary.json");
+}
+
+TEST(Cases, InclineTomlApproachesItsSteadyProfile) {
+  const auto summary = run_continuum("incline.toml", "--set scenario.spacing=0.01 --set time.end=3");
+  // At 3 s the surface has reached 0.88 of its final speed (transient of the one-dimensional momentum equation).
+  const double u = summary["u_surface"], exact = summary["u_surface_exact"];
+  EXPECT_GT(u / exact, 0.75);
+  EXPECT_LT(u / exact, 1.05);
+}
+
+class ColumnToml : public testing::TestWithParam<int> {};
+
+TEST_P(ColumnToml, CollapsesOutwards) {
+  // Rows of table 3 of Minatti & Paris: column-1.toml, column-2.toml, column-3.toml, column-4.toml, column-5.toml, column-6.toml.
+  const double aspect[] = {0.19, 0.55, 0.90, 1.60, 2.75, 3.00}, height[] = {0.0185, 0.0535, 0.0875, 0.1555, 0.2673, 0.2916};
+  const auto k = static_cast<std::size_t>(GetParam() - 1);
+  const std::string spacing = " --set scenario.spacing=" + std::to_string(k == 0 ? 0.0030 : 0.0081);
+  const auto summary = run_continuum("column-" + std::to_string(GetParam()) + ".toml", "--set time.end=0.15" + spacing);
+  EXPECT_NEAR(summary["aspect_ratio"], aspect[k], 0.01);
+  EXPECT_GT(summary["r_final"], 1.02 * 0.0972);
+  EXPECT_GT(summary["runout"], 0.02);
+  EXPECT_LT(summary["height_final"], 1.05 * height[k]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, ColumnToml, testing::Range(1, 7));
+
+}  // namespace
+}  // namespace bagnold::test
