@@ -8,13 +8,18 @@ scratch=${2:-$top/out/regimes}
 
 value() { sed -n "s/^ *\"$2\": \(.*[^,]\),\{0,1\}\$/\1/p" "$1" | head -1; }   # of a key of summary.json
 
-echo "theta_deg,status,regime,time,u_bar,energy_ratio,max_overlap_over_radius" > "$here/results.csv"
+# Largest value of column $2 of series.csv in $1 after t = 100: the initial fall is over.
+largest() {
+  awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) k = i }
+                        NR > 1 && $1 > 100 && $k > m { m = $k } END { print m }' "$1"
+}
+
+echo "theta_deg,status,regime,time,h,u_bar,max_overlap_over_radius_after_100" > "$here/results.csv"
 for theta in 18 24 34; do
   "$program" run "$top/cases/chute.toml" -o "$scratch/$theta" --overwrite --quiet \
-    --set scenario.angle_deg=$theta --set scenario.fill_height=10 --set time.end=${END:-300} \
-    --set output.series_every=1 --set output.vtk_every=50 --set output.snapshot_every=100 --set cg.from=200 --set cg.until=${END:-300}
-  summary=$scratch/$theta/summary.json
+    --set scenario.angle_deg=$theta --set scenario.fill_height=10 --set time.end=300 \
+    --set output.series_every=1 --set output.vtk_every=50 --set output.snapshot_every=100 --set cg.from=200 --set cg.until=300
   row="$theta"
-  for key in status regime time u_bar energy_ratio max_overlap_over_radius; do row="$row,$(value "$summary" $key)"; done
-  echo "$row" | tee -a "$here/results.csv"
+  for key in status regime time h u_bar; do row="$row,$(value "$scratch/$theta/summary.json" $key | tr -d '"')"; done
+  echo "$row,$(largest "$scratch/$theta/series.csv" max_overlap_over_radius)" | tee -a "$here/results.csv"
 done
