@@ -41,7 +41,7 @@ Layer front_layer(const io::H5File& file, const std::string& grains) {
   }
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a].y > x[b].y; });
+  std::sort(order.begin(), order.end(), [&](std::size_t left, std::size_t right) { return x[left].y > x[right].y; });
   Layer layer;
   for (const std::size_t i : order) {
     const double depth = x[i].y - front, r = 0.5 * diameter[i];

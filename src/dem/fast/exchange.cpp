@@ -187,10 +187,7 @@ void list_inner(Engine& engine, const PairList& remembered) {
 
 bool supports(const DemState& state) {
   const Grains& g = state.grains;
-#ifndef BAGNOLD_AVX512
-  if (g.size() >= 0) return false;  // the portable rows are not trusted yet: they fail in builds without AVX-512
-#endif
-  if (state.keep_ledger || !state.walls.empty() || g.flowing < fewest_grains) return false;
+  if (!available || state.keep_ledger || !state.walls.empty() || g.flowing < fewest_grains) return false;
   for (int k = 0; k < 3; ++k)
     if (state.box.periodic[at(k)] && state.box.length[k] < 2 * (largest_diameter(g) + 2 * skin_of(g))) return false;
   return true;
