@@ -20,12 +20,26 @@ BlockedProfile::BlockedProfile(const laws::CgKernels::Any& kernel, double spacin
     : current_(make_moments(kernel, make_lattice(kernel, spacing), box)), closed_(current_),
       block_samples_(std::max<std::int64_t>(1, (samples_expected + most_blocks - 1) / most_blocks)) {}
 
-void BlockedProfile::add(const Snapshot& snapshot) {
-  if (current_.samples == 0) begin_ = snapshot.time;
-  if (samples() == 0) start_ = snapshot.time;
-  end_ = snapshot.time;
-  add_snapshot(current_, snapshot, scratch_);
+void BlockedProfile::begin_sample(double time) {
+  if (current_.samples == 0) begin_ = time;
+  if (samples() == 0) start_ = time;
+  end_ = time;
+}
+
+void BlockedProfile::end_sample() {
   if (current_.samples >= block_samples_) close_block();
+}
+
+void BlockedProfile::add(const Snapshot& snapshot) {
+  begin_sample(snapshot.time);
+  add_snapshot(current_, snapshot, scratch_);
+  end_sample();
+}
+
+void BlockedProfile::add(const dem::DemState& state, const dem::ContactLaws& laws) {
+  begin_sample(state.time());
+  add_state(current_, state, laws, scratch_);
+  end_sample();
 }
 
 std::int64_t BlockedProfile::samples() const { return current_.samples + closed_.samples; }

@@ -28,6 +28,7 @@ class BlockedProfile {
   BlockedProfile(const laws::CgKernels::Any& kernel, double spacing, const Box& box, std::int64_t samples_expected = 0);
 
   void add(const Snapshot& snapshot);
+  void add(const dem::DemState& state, const dem::ContactLaws& laws);   // of a running engine
   std::int64_t samples() const;              // so far, the unfinished block included
   const laws::CgKernels::Any& kernel() const { return current_.kernel; }
   const Lattice& lattice() const { return current_.lattice; }
@@ -55,6 +56,8 @@ class BlockedProfile {
   MeanProfile mean_of(const ProfileMoments& all, bool averaged) const;
   ProfileMoments all_moments() const;        // of every sample
   void widen(const NodeRange& range);
+  void begin_sample(double time);
+  void end_sample();
   void close_block();
   void merge_neighbours();
   MeanProfile average(const std::vector<double>& rows, const std::vector<double>& scalars) const;

@@ -7,11 +7,9 @@
 
 namespace bagnold::cg {
 
-// Writes channels [0, kCarried) of grain i; `nn` is the sum of n_a n_b over its contacts (xx xy xz yy yz zz).
-inline void carried_by_grain(double* __restrict q, const Snapshot& s, std::size_t i, const double* nn) {
-  const double m = s.mass[i], I = s.inertia[i], d = s.diameter[i];
-  const Vec3& v = s.v[i];
-  const Vec3& omega = s.omega[i];
+// Writes channels [0, kCarried) of a grain of mass m, moment of inertia I and diameter d; `nn` is the sum of n_a n_b over its
+// contacts (xx xy xz yy yz zz).
+inline void carried_by_grain(double* __restrict q, double m, double I, double d, const Vec3& v, const Vec3& omega, const double* nn) {
   const double volume = std::numbers::pi / 6 * d * d * d;
   q[kMass] = m;
   q[kMomentum + 0] = m * v.x;
@@ -31,6 +29,10 @@ inline void carried_by_grain(double* __restrict q, const Snapshot& s, std::size_
   q[kSpin + 2] = I * omega.z;
   for (std::size_t k = 0; k < 6; ++k) q[kFabric + k] = volume * nn[k];
   q[kNumber] = 1;
+}
+
+inline void carried_by_grain(double* __restrict q, const Snapshot& s, std::size_t i, const double* nn) {
+  carried_by_grain(q, s.mass[i], s.inertia[i], s.diameter[i], s.v[i], s.omega[i], nn);
 }
 
 inline void add_normal(double* nn, const Vec3& n) {

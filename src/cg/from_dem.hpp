@@ -42,7 +42,6 @@ class ProfileObserver {
  private:
   StreamingOptions options_;
   BlockedProfile profile_;
-  DemScratch scratch_;
 };
 
 }  // namespace bagnold::cg

@@ -22,6 +22,7 @@
 #include "cg/channels.hpp"
 #include "cg/snapshot.hpp"
 #include "core/arrays.hpp"
+#include "dem/contact_model.hpp"
 #include "laws/registries.hpp"
 
 namespace bagnold::cg {
@@ -44,6 +45,10 @@ struct Lattice {
 // Gaussian; a fraction of the cut-off with the others).
 Lattice make_lattice(const laws::CgKernels::Any& kernel, double spacing, double origin = 0);
 
+// Makes sure that bin b exists (where a grain at z needs it). Grows by some more than asked, so that it happens rarely.
+void cover(BinMoments& moments, std::int64_t b, double z);
+inline double* bin_data(BinMoments& m, std::int64_t b) { return m.data.data() + (b - m.first) * m.terms * m.width; }
+
 struct ProfileMoments {
   laws::CgKernels::Any kernel;
   Lattice lattice;
@@ -54,17 +59,19 @@ struct ProfileMoments {
   BinMoments flow, base;
 };
 
-// Scratch of add_snapshot, kept between calls so that nothing is allocated.
+// Scratch of add_snapshot and add_state, kept between calls so that nothing is allocated.
 struct ProfileScratch {
-  std::vector<double> of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric
-  std::vector<std::int32_t> bin, order, begin, next;   // grains sorted by bin
-  std::vector<double> delta;                           // of a grain, from the centre of its bin
+  std::vector<double> of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric, 1 unused; 0 between calls
+  std::vector<std::int32_t> bin, order, begin;   // grains sorted by bin
+  std::vector<double> delta;                     // of a grain, from the centre of its bin
 };
 
 ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& lattice, const Box& box);
 
 // Throws NumericalError if a grain is so far away that it cannot be part of a profile (or its position is not finite).
 void add_snapshot(ProfileMoments& moments, const Snapshot& snapshot, ProfileScratch& scratch);
+// The same from a running engine, without the copies a Snapshot needs.
+void add_state(ProfileMoments& moments, const dem::DemState& state, const dem::ContactLaws& laws, ProfileScratch& scratch);
 void clear(ProfileMoments& moments);   // keeps the bins
 void add_moments(ProfileMoments& to, const ProfileMoments& from);   // of the same kernel and lattice
 

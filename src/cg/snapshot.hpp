@@ -32,11 +32,15 @@ struct StoredSnapshot {
 };
 
 // True if the partner of the contact does not flow (a base grain or a wall): its force leaves the flowing system.
-inline bool touches_base(const Snapshot& s, const dem::Contact& c) { return c.j < 0 || c.j >= s.flowing; }
+template <class Contact>
+bool touches_base(std::int64_t flowing, const Contact& c) { return c.j < 0 || c.j >= flowing; }
+inline bool touches_base(const Snapshot& s, const dem::Contact& c) { return touches_base(s.flowing, c); }
 
 // From the contact point to the centre of grain i: what a base contact spreads along, see cg/channels.hpp.
+template <class Contact>
+Vec3 arm_from_contact(double diameter, const Contact& c) { return (0.5 * (diameter - c.overlap)) * c.normal; }
 inline Vec3 arm_from_contact(const Snapshot& s, const dem::Contact& c) {
-  return (0.5 * (s.diameter[static_cast<std::size_t>(c.i)] - c.overlap)) * c.normal;
+  return arm_from_contact(s.diameter[static_cast<std::size_t>(c.i)], c);
 }
 
 }  // namespace bagnold::cg

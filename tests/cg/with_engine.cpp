@@ -59,6 +59,36 @@ cg::ProfileSums sums_of(const dem::DemState& s, const dem::ContactLaws& laws) {
   return cg::evaluate(moments, -12, 50);
 }
 
+TEST(ProfileOfARunningEngine, IsThatOfItsSnapshotsSampleAfterSample) {
+  const auto laws = soft_laws();
+  dem::DemState s = small_chute(2e-3);
+  s.walls = {{{0, 0, -0.6}, {0, 0, 1}, 0}};
+  dem::prepare(s, laws);
+  const laws::CgKernels::Any kernel = laws::CgGaussian{0.4};
+  auto direct = cg::make_moments(kernel, cg::make_lattice(kernel, 0.25), s.box), plain = direct;
+  cg::ProfileScratch kept;
+  for (int sample = 0; sample < 4; ++sample) {
+    cg::DemScratch memory;
+    cg::ProfileScratch fresh;
+    cg::add_state(direct, s, laws, kept);
+    cg::add_snapshot(plain, cg::snapshot_of(s, laws, memory), fresh);
+    dem::advance(s, laws, 50);
+  }
+  EXPECT_GT(direct.contacts, 100);
+  EXPECT_GT(norm(plain.base_force), 0);
+  EXPECT_EQ(direct.contacts, plain.contacts);
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(direct.base_force[a], plain.base_force[a], 1e-12 * norm(plain.base_force));
+  const auto one = cg::evaluate(direct, -12, 50), other = cg::evaluate(plain, -12, 50);
+  for (std::size_t c = 0; c < cg::kChannels; ++c) {
+    double peak = 0, worst = 0;
+    for (std::size_t n = 0; n < one.value.size(); ++n) {
+      peak = std::max(peak, std::abs(other.value[n][c]));
+      worst = std::max(worst, std::abs(one.value[n][c] - other.value[n][c]));
+    }
+    EXPECT_LE(worst, 1e-13 * peak) << "channel " << c;
+  }
+}
+
 // Largest deviation of (p(t + dt) - p(t - dt))/2dt from div sigma + rho g - d(Pi)/dz at t, over the largest term.
 double momentum_error(double dt) {
   const auto laws = soft_laws();
