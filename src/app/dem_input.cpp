@@ -23,6 +23,11 @@ const std::vector<std::string> species = {"grain", "base"};
 dem::PairParameters read_pair(const Section& contact) {
   dem::PairParameters pair;
   pair.normal = contact.read_law<laws::NormalLaws>("normal", "linear");
+  // Published values of gamma_n differ by a factor m_ij between the two conventions: never guess.
+  const auto* linear = std::get_if<laws::Linear>(&pair.normal);
+  if (linear != nullptr && linear->damping && !contact.has("damping_convention"))
+    contact.fail("damping", "damping_convention is missing, expected \"force\" (f = kn delta - gamma v) or "
+                            "\"per_reduced_mass\" (f = kn delta - gamma m_ij v)");
   const bool hertz = name_of(pair.normal) == "hertz";
   pair.tangential = contact.read_law<laws::TangentialLaws>("tangential", hertz ? "mindlin" : "linear_history");
   pair.rolling = contact.read_law<laws::RollingLaws>("rolling", "none");

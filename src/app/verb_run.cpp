@@ -72,6 +72,8 @@ int run(const RunOptions& options) {
   const RunContext context = read_context(input, *model, directory, options.quiet);
   prepare_directory(directory, options.overwrite);
   io::write_file(directory / "case.toml", context.resolved_case);
+  if (!options.quiet)
+    for (const Derived& d : model->derived()) fmt::print(stderr, "  {:<34} {:<24} {}\n", d.name, d.value, d.meaning);
   return drive(*model, context);
 }
 

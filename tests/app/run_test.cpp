@@ -172,12 +172,31 @@ INSTANTIATE_TEST_SUITE_P(Input, Rejects, testing::Values(
     BadInput{"grains.density=-2", "expected > 0"},
     BadInput{"seed=1.5", "expected an integer"}));
 
+TEST(Run, AsksForTheConventionOfTheDamping) {
+  const Scratch scratch;
+  std::string text = tiny;
+  text.replace(text.find("collision_time = 0.01\nrestitution = 0.8"), 39, "stiffness = 5e4\ndamping = 20");
+  write_text(scratch / "c.toml", text);
+  const Outcome outcome = bagnold(scratch, "run c.toml -o a --quiet");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("c.toml:16:11: error: contact.damping: damping_convention is missing"), std::string::npos) << outcome.err;
+  EXPECT_EQ(bagnold(scratch, "run c.toml -o a --quiet --set contact.damping_convention=force --set time.end=0.1").exit_code, 0);
+}
+
+TEST(Run, PrintsTheCollisionTimeOfEveryContactType) {
+  const Scratch scratch;
+  write_text(scratch / "c.toml", tiny);
+  const Outcome outcome = bagnold(scratch, "run c.toml -o a --set time.end=0.1");
+  for (const char* word : {"contact grain-grain", "contact grain-base", "collision time", "restitution"})
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << word << "\n" << outcome.err;
+}
+
 TEST(Run, CatchesOverlapsAtTheStart) {
   const Scratch scratch;
   const auto pair_at = [&](double distance) {
     write_text(scratch / "c.toml", "model = \"dem\"\n[scenario]\nkind = \"grains\"\n"
         "[[scenario.grains]]\nposition = [0, 0, 0]\n[[scenario.grains]]\nposition = [" + std::to_string(distance) + ", 0, 0]\n"
-        "[contact]\nstiffness = 2e5\ndamping = 25\n[time]\nend = 0.01\n");
+        "[contact]\nstiffness = 2e5\ndamping = 25\ndamping_convention = \"force\"\n[time]\nend = 0.01\n");
     return bagnold(scratch, "run c.toml -o a --quiet --overwrite");
   };
   for (const double distance : {0.9, 0.3, 0.0}) {
