@@ -43,7 +43,9 @@ dem::DemState flow(const dem::ContactLaws& laws) {
   for (int k = 0; k <= 20; ++k)
     for (int j = 0; j < (k < 20 ? 10 : 15); ++j)
       for (int i = 0; i < (k < 20 ? 20 : 30); ++i, ++item) {
-        const auto u = [&](std::uint32_t draw) { return random::uniform(2, random::Stream::perturbation, item, draw) - 0.5; };
+        const auto u = [&](std::uint32_t draw) {
+          return random::uniform(2, random::Stream::perturbation, item, draw) - 0.5;
+        };
         const bool fixed = k == 20;
         const double z = fixed ? 0 : k + 1;
         const double spacing = fixed ? 2.0 / 3 : 1;
@@ -72,7 +74,7 @@ void streaming(benchmark::State& bench) {
     work();
     total += cpu_seconds() - begin;
   };
-  double undisturbed = 1e9, stepping = 1e9, sampling = 1e9;   // best of all rounds: the machine may be busy
+  double undisturbed = 1e9, stepping = 1e9, sampling = 1e9;  // best of all rounds: the machine may be busy
   for (auto _ : bench) {
     double plain = 0, run = 0, sample = 0;
     for (int k = 0; k < 10; ++k) timed(plain, [&] { dem::advance(s, laws, 2 * steps_per_sample); });
@@ -89,7 +91,8 @@ void streaming(benchmark::State& bench) {
   bench.counters["ns_25_steps"] = stepping * per_grain;
   bench.counters["ns_sample"] = sampling * per_grain;
   bench.counters["added"] = (stepping + sampling) / undisturbed - 1;
-  bench.counters["contacts_per_grain"] = static_cast<double>(dem::contacts(s, laws).size()) / static_cast<double>(s.grains.flowing);
+  bench.counters["contacts_per_grain"] =
+      static_cast<double>(dem::contacts(s, laws).size()) / static_cast<double>(s.grains.flowing);
 }
 BENCHMARK(streaming)->Iterations(20)->Unit(benchmark::kMillisecond);
 

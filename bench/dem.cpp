@@ -57,12 +57,15 @@ const DemState& flowing_tile() {
     for (double z = 0; z < layers; ++z)
       for (double y = 0; y < tile; ++y)
         for (double x = 0; x < tile; ++x, ++n)
-          add_grain(s.grains, {x + 0.04 * jitter(n, 0), y + 0.04 * jitter(n, 1), z + 1 + 0.04 * jitter(n, 2)},
-                    {5 * (1 - std::pow(1 - z / layers, 1.5)) + 0.5 * jitter(n, 3), 0.5 * jitter(n, 4), 0.5 * jitter(n, 5)}, {});
+          add_grain(
+              s.grains, {x + 0.04 * jitter(n, 0), y + 0.04 * jitter(n, 1), z + 1 + 0.04 * jitter(n, 2)},
+              {5 * (1 - std::pow(1 - z / layers, 1.5)) + 0.5 * jitter(n, 3), 0.5 * jitter(n, 4), 0.5 * jitter(n, 5)},
+              {});
     s.grains.flowing = n;
     for (double y = 0; y < 12; ++y)
       for (double x = 0; x < 12; ++x, ++n)
-        add_grain(s.grains, {x / 1.2 + 0.2 * jitter(n, 0), y / 1.2 + 0.2 * jitter(n, 1), 0.6 * jitter(n, 2) - 0.3}, {}, {});
+        add_grain(s.grains, {x / 1.2 + 0.2 * jitter(n, 0), y / 1.2 + 0.2 * jitter(n, 1), 0.6 * jitter(n, 2) - 0.3}, {},
+                  {});
     const ContactLaws laws = chute_laws();
     prepare(s, laws);
     advance(s, laws, 60000);
@@ -80,7 +83,8 @@ DemState chute(int nx, int ny) {
       for (int b = 0; b < ny; ++b)
         for (std::int64_t i = begin; i < end; ++i) {
           const auto k = static_cast<std::size_t>(i);
-          add_grain(s.grains, wrap(t.box, t.grains.x[k]) + Vec3{a * tile, b * tile, 0}, full_step_velocity(t, i), full_step_omega(t, i));
+          add_grain(s.grains, wrap(t.box, t.grains.x[k]) + Vec3{a * tile, b * tile, 0}, full_step_velocity(t, i),
+                    full_step_omega(t, i));
         }
   };
   copy(0, t.grains.flowing);
@@ -117,6 +121,13 @@ void chute_steps(benchmark::State& bench) {
   bench.counters["pairs/grain"] = static_cast<double>(s.pairs.size()) / n;
   bench.counters["steps/rebuild"] = steps / static_cast<double>(s.rebuilds - rebuilds);
 }
-BENCHMARK(chute_steps)->Args({1, 1})->Args({2, 1})->Args({4, 2})->Args({4, 4})->Args({8, 4})->Args({16, 8})->Unit(benchmark::kMillisecond);
+BENCHMARK(chute_steps)
+    ->Args({1, 1})
+    ->Args({2, 1})
+    ->Args({4, 2})
+    ->Args({4, 4})
+    ->Args({8, 4})
+    ->Args({16, 8})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -19,7 +19,8 @@ constexpr int bed_version = 1;
 
 fs::path cache_folder() {
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != 0) return fs::path(xdg) / "bagnold";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0) return fs::path(home) / ".cache" / "bagnold";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
+    return fs::path(home) / ".cache" / "bagnold";
   return {};
 }
 
@@ -45,7 +46,8 @@ scenario::Bed stored_bed(const scenario::BedRecipe& recipe) {
   scenario::Bed bed = scenario::settle_bed(recipe);
   if (folder.empty() || !(fs::create_directories(folder, failed), fs::is_directory(folder, failed))) return bed;
   try {
-    const fs::path part = path.string() + fmt::format(".{}", static_cast<unsigned>(std::hash<std::string>{}(path.string())));
+    const fs::path part =
+        path.string() + fmt::format(".{}", static_cast<unsigned>(std::hash<std::string>{}(path.string())));
     auto file = io::H5File::create(part);
     file.write("x", bed.x);
     file.write("diameter", bed.diameter);

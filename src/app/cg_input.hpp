@@ -12,15 +12,15 @@ namespace bagnold::app {
 
 // What foreign files do not say.
 struct ForeignOptions {
-  std::vector<std::int64_t> base_types;        // LAMMPS types or MercuryDPM species (column info) that do not flow
-  double density = 0;                          // of the grains, where masses are not in the file
-  double timestep = 0;                         // of LAMMPS, where times are not in the file
+  std::vector<std::int64_t> base_types;  // LAMMPS types or MercuryDPM species (column info) that do not flow
+  double density = 0;                    // of the grains, where masses are not in the file
+  double timestep = 0;                   // of LAMMPS, where times are not in the file
   // What the columns of a local dump are, in order: id1 id2 fx fy fz [tx ty tz], "-" to skip one. Forces are on id1.
   std::vector<std::string> contact_columns{"id1", "id2", "fx", "fy", "fz"};
 };
 
 struct SourceInfo {
-  std::optional<Vec3> gravity;                 // known for own runs only
+  std::optional<Vec3> gravity;  // known for own runs only
 };
 
 // Calls `each` with every instant of the files, in order of time within each run. `inputs`: run directories or run.h5;

@@ -26,7 +26,8 @@ cg::StreamingOptions read_options(const config::Section& section, const DemInput
   double shortest = INFINITY;
   for (const dem::ContactType& type : dem::contact_types(in.state, in.model)) shortest = std::min(shortest, type.tc);
   settle(keys.every, "every", 0.5 * shortest);
-  if (*keys.from > *keys.until) section.fail("from", "the average begins after it ends (cg.until), expected from <= until");
+  if (*keys.from > *keys.until)
+    section.fail("from", "the average begins after it ends (cg.until), expected from <= until");
 
   cg::StreamingOptions options;
   options.kernel = *laws::CgKernels::make(section.choose("kernel", "gaussian", laws::CgKernels::names()));
@@ -43,7 +44,8 @@ cg::FlowSetting setting_of(const DemInput& in) { return {in.state.gravity, in.di
 }  // namespace
 
 DemFlow::DemFlow(const config::Section& section, const DemInput& in)
-    : options_(read_options(section, in)), observer_(options_, in.state.box),
+    : options_(read_options(section, in)),
+      observer_(options_, in.state.box),
       energy_every_(std::max<std::int64_t>(1, std::llround(0.5 * time_unit(in) / in.state.dt))) {}
 
 std::int64_t DemFlow::next_step(std::int64_t step) const {
@@ -80,7 +82,9 @@ cg::BlockedProfile DemFlow::profile(const DemInput& in) const {
   return instant;
 }
 
-cg::RegimeReport DemFlow::regime(const cg::FlowNumbers& numbers) const { return cg::classify({t_, kinetic_, elastic_}, numbers.layering); }
+cg::RegimeReport DemFlow::regime(const cg::FlowNumbers& numbers) const {
+  return cg::classify({t_, kinetic_, elastic_}, numbers.layering);
+}
 
 void DemFlow::write(const std::filesystem::path& directory, const DemInput& in) const {
   const cg::BlockedProfile all = profile(in);

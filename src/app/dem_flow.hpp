@@ -20,9 +20,12 @@ struct CgKeys {
   std::optional<double> width, spacing, from, until, every;
   static constexpr auto fields() {
     return std::tuple{
-        field("width", "length", "standard deviation of the kernel; auto: a quarter of the grain diameter", &CgKeys::width, positive()),
-        field("spacing", "length", "distance of the nodes of a profile; auto: a quarter of the width", &CgKeys::spacing, positive()),
-        field("from", "time", "first sample; auto: 100 sqrt(d/g) before `until`, at most half the run", &CgKeys::from, non_negative()),
+        field("width", "length", "standard deviation of the kernel; auto: a quarter of the grain diameter",
+              &CgKeys::width, positive()),
+        field("spacing", "length", "distance of the nodes of a profile; auto: a quarter of the width", &CgKeys::spacing,
+              positive()),
+        field("from", "time", "first sample; auto: 100 sqrt(d/g) before `until`, at most half the run", &CgKeys::from,
+              non_negative()),
         field("until", "time", "last sample; auto: the end", &CgKeys::until, non_negative()),
         field("every", "time", "between samples; auto: half the shortest collision time", &CgKeys::every, positive())};
   }
@@ -33,7 +36,7 @@ class DemFlow {
   // Reads [cg]. `in` is prepared. Throws InputError at the place of a key that makes no sense.
   DemFlow(const config::Section& cg, const DemInput& in);
 
-  std::int64_t next_step(std::int64_t step) const;   // the next one at which observe() has to be called
+  std::int64_t next_step(std::int64_t step) const;  // the next one at which observe() has to be called
   void observe(const DemInput& in);
   std::vector<NamedArray> state();
 
@@ -48,9 +51,9 @@ class DemFlow {
 
   cg::StreamingOptions options_;
   cg::ProfileObserver observer_;
-  std::int64_t energy_every_ = 1;                    // steps
-  std::vector<double> t_, kinetic_, elastic_;        // for the regime
-  double max_overlap_ = 0;                           // over the radius, of the same instants
+  std::int64_t energy_every_ = 1;              // steps
+  std::vector<double> t_, kinetic_, elastic_;  // for the regime
+  double max_overlap_ = 0;                     // over the radius, of the same instants
   std::int64_t last_energy_step_ = -1;
 };
 

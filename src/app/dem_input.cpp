@@ -26,8 +26,9 @@ dem::PairParameters read_pair(const Section& contact) {
   // Published values of gamma_n differ by a factor m_ij between the two conventions: never guess.
   const auto* linear = std::get_if<laws::Linear>(&pair.normal);
   if (linear != nullptr && linear->damping && !contact.has("damping_convention"))
-    contact.fail("damping", "damping_convention is missing, expected \"force\" (f = kn delta - gamma v) or "
-                            "\"per_reduced_mass\" (f = kn delta - gamma m_ij v)");
+    contact.fail("damping",
+                 "damping_convention is missing, expected \"force\" (f = kn delta - gamma v) or "
+                 "\"per_reduced_mass\" (f = kn delta - gamma m_ij v)");
   const bool hertz = name_of(pair.normal) == "hertz";
   pair.tangential = contact.read_law<laws::TangentialLaws>("tangential", hertz ? "mindlin" : "linear_history");
   pair.rolling = contact.read_law<laws::RollingLaws>("rolling", "none");
@@ -70,7 +71,8 @@ void read_scenario(const Section& section, const scenario::GrainMaterial& materi
     out.base_size_ratio = chute.base_size_ratio;
     out.fill_height = chute.fill_height;
     scenario::check_chute(chute, material);  // before the base is built
-    out.state = scenario::make_chute(chute, material, stored_base(chute.length, chute.width, chute.base_size_ratio * d, seed), seed);
+    out.state = scenario::make_chute(chute, material,
+                                     stored_base(chute.length, chute.width, chute.base_size_ratio * d, seed), seed);
   } else if (out.scenario == "column") {
     const auto column = section.read<scenario::Column>();
     out.column_radius = column.radius;
@@ -96,7 +98,8 @@ double automatic_step(const DemInput& in) {
   double shortest = INFINITY;
   for (const dem::ContactType& type : dem::contact_types(in.state, in.model)) shortest = std::min(shortest, type.tc);
   if (const auto* linear = std::get_if<laws::Linear>(&in.model.pairs.front().normal))
-    if (linear->collision_time && std::abs(*linear->collision_time / shortest - 1) < 1e-12) shortest = *linear->collision_time;
+    if (linear->collision_time && std::abs(*linear->collision_time / shortest - 1) < 1e-12)
+      shortest = *linear->collision_time;
   return shortest / 50;
 }
 

@@ -12,12 +12,12 @@ namespace bagnold::app {
 
 struct DemInput {
   std::string scenario;
-  dem::DemState state;          // prepared: ready to step
+  dem::DemState state;  // prepared: ready to step
   dem::ContactModel model;
   dem::ContactLaws laws;
   double end = 0;
   bool stop_when_arrested = false;
-  double gravity = 0;           // magnitude
+  double gravity = 0;                                          // magnitude
   double angle_deg = 0, base_size_ratio = 0, fill_height = 0;  // chute only
   double column_radius = 0, column_height = 0;                 // column and heap only
   double diameter = 1, density = 1;                            // of the mean flowing grain

@@ -73,15 +73,28 @@ std::vector<double> dem_series_row(const DemInput& in, double initial_energy, st
   const dem::Ledger& ledger = in.state.ledger;
   dem::list_contacts(in.state, in.laws, contacts);
   const auto kept = [&](double v) { return in.state.keep_ledger ? v : NAN; };
-  return {in.state.time(), e.translational, e.rotational, e.gravity, e.normal_spring, e.tangential_spring, e.rolling_spring,
-          kept(ledger.damped.normal), kept(ledger.damped.tangential), kept(ledger.sliding),
-          kept(ledger.damped.rolling + ledger.roll_sliding), kept(ledger.opened),
+  return {in.state.time(),
+          e.translational,
+          e.rotational,
+          e.gravity,
+          e.normal_spring,
+          e.tangential_spring,
+          e.rolling_spring,
+          kept(ledger.damped.normal),
+          kept(ledger.damped.tangential),
+          kept(ledger.sliding),
+          kept(ledger.damped.rolling + ledger.roll_sliding),
+          kept(ledger.opened),
           kept(e.total() + dem::lost(ledger) - initial_energy),
-          e.elastic() > 0 ? e.kinetic() / e.elastic() : NAN, mean_velocity(in.state).x, centre_height(in.state),
-          static_cast<double>(contacts.size()) / static_cast<double>(in.state.grains.flowing), dem::max_overlap_over_radius(in.state)};
+          e.elastic() > 0 ? e.kinetic() / e.elastic() : NAN,
+          mean_velocity(in.state).x,
+          centre_height(in.state),
+          static_cast<double>(contacts.size()) / static_cast<double>(in.state.grains.flowing),
+          dem::max_overlap_over_radius(in.state)};
 }
 
-void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::DemState& state, const std::vector<dem::Contact>& contacts) {
+void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::DemState& state,
+                        const std::vector<dem::Contact>& contacts) {
   const dem::Grains& g = state.grains;
   const FullStep full(state);
   const std::string grains = group + "/grains/", list = group + "/contacts/";
@@ -96,8 +109,9 @@ void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::D
   file.write(grains + "species", g.species);
   file.write(grains + "inertia", g.inertia);
   const Box& box = state.box;
-  file.write(grains + "box", std::vector<double>{box.origin.x, box.origin.y, box.origin.z, box.length.x, box.length.y, box.length.z,
-                                                 box.periodic[0] * 1.0, box.periodic[1] * 1.0, box.periodic[2] * 1.0});
+  file.write(grains + "box",
+             std::vector<double>{box.origin.x, box.origin.y, box.origin.z, box.length.x, box.length.y, box.length.z,
+                                 box.periodic[0] * 1.0, box.periodic[1] * 1.0, box.periodic[2] * 1.0});
   file.write(grains + "gravity", std::vector<double>{state.gravity.x, state.gravity.y, state.gravity.z});
   file.attribute(group + "/grains", "flowing", g.flowing);
 
@@ -123,7 +137,8 @@ void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::D
 }
 
 std::vector<std::pair<std::string, std::string>> write_dem_vtk(const std::filesystem::path& directory, int number,
-                                                               const dem::DemState& state, const std::vector<dem::Contact>& contacts) {
+                                                               const dem::DemState& state,
+                                                               const std::vector<dem::Contact>& contacts) {
   const dem::Grains& g = state.grains;
   const FullStep full(state);
   std::vector<Vec3> x;
@@ -133,10 +148,18 @@ std::vector<std::pair<std::string, std::string>> write_dem_vtk(const std::filesy
     radius.push_back(0.5 * g.diameter[i]);
     speed.push_back(norm(full.v[i]));
   }
-  const std::string grains_name = fmt::format("grains_{:06}.vtp", number), contacts_name = fmt::format("contacts_{:06}.vtp", number);
+  const std::string grains_name = fmt::format("grains_{:06}.vtp", number),
+                    contacts_name = fmt::format("contacts_{:06}.vtp", number);
   io::write_vtp_points(directory / grains_name, x,
-                       {{"id", g.id}, {"type", g.species}, {"radius", radius}, {"mass", g.mass}, {"v", full.v},
-                        {"speed", speed}, {"omega", full.omega}, {"f", g.force}, {"tq", g.torque}});
+                       {{"id", g.id},
+                        {"type", g.species},
+                        {"radius", radius},
+                        {"mass", g.mass},
+                        {"v", full.v},
+                        {"speed", speed},
+                        {"omega", full.omega},
+                        {"f", g.force},
+                        {"tq", g.torque}});
 
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<double> force, overlap;
@@ -200,11 +223,14 @@ std::vector<Derived> dem_derived(const DemInput& in) {
   const auto number = [](double v) { return fmt::format("{:.6g}", v); };
   for (const dem::ContactType& type : dem::contact_types(in.state, in.model)) {
     const std::string pair = type.a + "-" + type.b;
-    out.push_back({"contact " + pair, fmt::format("m_ij = {:.6g}", type.reduced_mass), "reduced mass at which the following hold"});
+    out.push_back({"contact " + pair, fmt::format("m_ij = {:.6g}", type.reduced_mass),
+                   "reduced mass at which the following hold"});
     out.push_back({"  collision time tc", number(type.tc), "eq. 5"});
     out.push_back({"  restitution", number(type.restitution), "eq. 6"});
-    out.push_back({"  kn, gamma_n", fmt::format("{:.6g}, {:.6g}", type.kn, type.gamma_n), "f_n = kn delta - gamma_n v_n"});
-    out.push_back({"  kt, gamma_t, mu", fmt::format("{:.6g}, {:.6g}, {:.6g}", type.kt, type.gamma_t, type.mu), "tangential"});
+    out.push_back(
+        {"  kn, gamma_n", fmt::format("{:.6g}, {:.6g}", type.kn, type.gamma_n), "f_n = kn delta - gamma_n v_n"});
+    out.push_back(
+        {"  kt, gamma_t, mu", fmt::format("{:.6g}, {:.6g}, {:.6g}", type.kt, type.gamma_t, type.mu), "tangential"});
   }
   const dem::Grains& g = in.state.grains;
   const double steps = std::ceil(in.end / in.state.dt - 1e-6), grain_steps = steps * static_cast<double>(g.flowing);
@@ -212,7 +238,8 @@ std::vector<Derived> dem_derived(const DemInput& in) {
   out.push_back({"time step", number(in.state.dt), "algorithm 1"});
   out.push_back({"steps", fmt::format("{:.0f}", steps), ""});
   out.push_back({"grains", fmt::format("{} + {} fixed", g.flowing, g.size() - g.flowing), "flowing + base"});
-  out.push_back({"grain-steps", fmt::format("{:.3g}", grain_steps), "at 3e7 per second and core: " + fmt::format("{:.0f} core-seconds", grain_steps / 3e7)});
+  out.push_back({"grain-steps", fmt::format("{:.3g}", grain_steps),
+                 "at 3e7 per second and core: " + fmt::format("{:.0f} core-seconds", grain_steps / 3e7)});
   out.push_back({"memory", fmt::format("{:.1f} MB", static_cast<double>(g.size()) * 600e-6), "about"});
   out.push_back({"disk", fmt::format("{:.2f} MB", state_mb), "per snapshot, ParaView file or checkpoint, about"});
   return out;

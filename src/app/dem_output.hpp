@@ -15,9 +15,11 @@ std::vector<io::Column> dem_series_columns();
 // `contacts` is scratch space. Energies are of the flowing grains; gravity counts from the initial state.
 std::vector<double> dem_series_row(const DemInput& in, double initial_energy, std::vector<dem::Contact>& contacts);
 
-void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::DemState& state, const std::vector<dem::Contact>& contacts);
+void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::DemState& state,
+                        const std::vector<dem::Contact>& contacts);
 std::vector<std::pair<std::string, std::string>> write_dem_vtk(const std::filesystem::path& directory, int number,
-                                                               const dem::DemState& state, const std::vector<dem::Contact>& contacts);
+                                                               const dem::DemState& state,
+                                                               const std::vector<dem::Contact>& contacts);
 void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double initial_energy);
 std::vector<Derived> dem_derived(const DemInput& in);
 

@@ -36,8 +36,11 @@ struct Schedule {
 class Run {
  public:
   Run(Model& model, const RunContext& context)
-      : model_(model), context_(context), provenance_(io::provenance(context.seed, context.resolved_case)),
-        series_at_{*context.output.series_every}, snapshot_at_{*context.output.snapshot_every},
+      : model_(model),
+        context_(context),
+        provenance_(io::provenance(context.seed, context.resolved_case)),
+        series_at_{*context.output.series_every},
+        snapshot_at_{*context.output.snapshot_every},
         vtk_at_{*context.output.vtk_every} {
     if (context.resume) restore();
     const auto columns = model.series_columns();
@@ -133,7 +136,8 @@ class Run {
     for (const auto& [name, file] : model_.write_vtk(dir() / "vtk", static_cast<int>(vtk_number_))) {
       const auto path = dir() / "vtk" / (name + ".pvd");
       if (!collections_.contains(name))
-        collections_.emplace(name, context_.resume ? io::PvdSeries::resume(path, model_.time()) : io::PvdSeries::create(path));
+        collections_.emplace(
+            name, context_.resume ? io::PvdSeries::resume(path, model_.time()) : io::PvdSeries::create(path));
       collections_.at(name).add(model_.time(), file);
     }
     ++vtk_number_;

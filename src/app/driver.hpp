@@ -19,11 +19,14 @@ struct OutputSettings {
   std::optional<double> series_every, snapshot_every, vtk_every;
   double checkpoint_every_s = 120;
   static constexpr auto fields() {
-    return std::tuple{
-        field("series_every", "time", "interval of rows in series.csv; auto: 1/1000 of the run", &OutputSettings::series_every, positive()),
-        field("snapshot_every", "time", "interval of states in run.h5; auto: 1/10 of the run", &OutputSettings::snapshot_every, positive()),
-        field("vtk_every", "time", "interval of ParaView files; auto: 1/20 of the run", &OutputSettings::vtk_every, positive()),
-        field("checkpoint_every_s", "s", "wall time between exact checkpoints", &OutputSettings::checkpoint_every_s, positive())};
+    return std::tuple{field("series_every", "time", "interval of rows in series.csv; auto: 1/1000 of the run",
+                            &OutputSettings::series_every, positive()),
+                      field("snapshot_every", "time", "interval of states in run.h5; auto: 1/10 of the run",
+                            &OutputSettings::snapshot_every, positive()),
+                      field("vtk_every", "time", "interval of ParaView files; auto: 1/20 of the run",
+                            &OutputSettings::vtk_every, positive()),
+                      field("checkpoint_every_s", "s", "wall time between exact checkpoints",
+                            &OutputSettings::checkpoint_every_s, positive())};
   }
 };
 
@@ -32,7 +35,7 @@ struct RunContext {
   OutputSettings output;
   std::string model_name;
   std::int64_t seed = 0;
-  std::string resolved_case;     // provenance
+  std::string resolved_case;  // provenance
   bool resume = false, quiet = false;
 };
 

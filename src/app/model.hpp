@@ -38,7 +38,7 @@ class Model {
   virtual double time() const = 0;
   virtual double end_time() const = 0;
   virtual std::int64_t step() const = 0;
-  virtual double element_steps() const = 0;   // grain-, particle- or cell-steps taken by this process so far
+  virtual double element_steps() const = 0;  // grain-, particle- or cell-steps taken by this process so far
 
   // Steps until time() >= until (to within rounding), stop_requested() (app/signals.hpp) or ended(). Must take the
   // same steps however a run is cut into calls: never shorten a step to hit `until`.
@@ -52,11 +52,11 @@ class Model {
   virtual std::vector<NamedArray> state() = 0;
   virtual void restored() = 0;
 
-  virtual std::vector<io::Column> series_columns() const = 0;   // first column: t
-  virtual std::vector<double> series_row() = 0;                 // must not change the trajectory
-  virtual std::string progress() = 0;                           // the physics that matters, a few words
+  virtual std::vector<io::Column> series_columns() const = 0;  // first column: t
+  virtual std::vector<double> series_row() = 0;                // must not change the trajectory
+  virtual std::string progress() = 0;                          // the physics that matters, a few words
 
-  virtual void write_snapshot(io::H5File& file, const std::string& group) = 0;           // into run.h5
+  virtual void write_snapshot(io::H5File& file, const std::string& group) = 0;  // into run.h5
   // Files for ParaView of the present state; returns (series name, file name relative to `directory`).
   virtual std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
                                                                      int number) = 0;

@@ -76,7 +76,8 @@ class DemModel final : public Model {
     dem::list_contacts(in_.state, in_.laws, contacts_);
     write_dem_snapshot(file, group, in_.state, contacts_);
   }
-  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory, int number) override {
+  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
+                                                             int number) override {
     dem::list_contacts(in_.state, in_.laws, contacts_);
     return write_dem_vtk(directory, number, in_.state, contacts_);
   }
@@ -102,12 +103,12 @@ class DemModel final : public Model {
   }
 
   DemInput in_;
-  std::optional<DemFlow> flow_;                   // of flows that are periodic in x and y
+  std::optional<DemFlow> flow_;  // of flows that are periodic in x and y
   double initial_energy_;
   std::int64_t arrested_ = 0, arrest_check_ = 0;  // steps between checks; 0: none
   double arrest_from_ = 0;
   double grain_steps_ = 0;
-  std::vector<dem::Contact> contacts_;            // scratch
+  std::vector<dem::Contact> contacts_;  // scratch
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ namespace {
 
 class ShallowModel final : public Model {
  public:
-  explicit ShallowModel(ShallowInput input) : in_(std::move(input)), initial_mass_(shallow::total_mass(in_.solver, in_.state)) {
+  explicit ShallowModel(ShallowInput input)
+      : in_(std::move(input)), initial_mass_(shallow::total_mass(in_.solver, in_.state)) {
     start_maps(in_, maps_);
     for (const shallow::Boundary& b : in_.solver.setup.boundary) fed_ |= b.kind == shallow::BoundaryKind::inflow;
   }
@@ -56,8 +57,11 @@ class ShallowModel final : public Model {
     return fmt::format("front {:.4g}, h {:.3g}, speed {:.3g}", row[4], row[6], row[7]);
   }
 
-  void write_snapshot(io::H5File& file, const std::string& group) override { write_shallow_snapshot(file, group, in_, maps_); }
-  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory, int number) override {
+  void write_snapshot(io::H5File& file, const std::string& group) override {
+    write_shallow_snapshot(file, group, in_, maps_);
+  }
+  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
+                                                             int number) override {
     const std::string name = fmt::format("layer_{:06}.vti", number);
     write_shallow_vti(directory / name, in_, maps_);
     return {{"layer", name}};
@@ -66,7 +70,9 @@ class ShallowModel final : public Model {
 
   void add_summary(nlohmann::ordered_json& summary, double wall_s) override {
     const auto row = series_row();
-    const auto number = [](double v) { return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr); };
+    const auto number = [](double v) {
+      return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr);
+    };
     const shallow::Grid& g = in_.solver.setup.grid;
     summary["cells"] = static_cast<std::int64_t>(g.nx) * g.ny;
     summary["cell_updates_per_s"] = number(wall_s > 0 ? element_steps() / wall_s : NAN);
@@ -98,7 +104,8 @@ class ShallowModel final : public Model {
             {"cell size", fmt::format("{:.4g} x {:.4g}", g.dx, g.dy), "length"},
             {"mass", fmt::format("{:.6g}", initial_mass_), "in the domain at the start"},
             {"wave speed", fmt::format("{:.4g}", c), "sqrt(K g cos(theta) h) of the thickest cell"},
-            {"first step", h > 0 ? fmt::format("{:.3g}", s.setup.scheme.cfl * g.dx / c) : "none", "about; cfl dx/wave speed"},
+            {"first step", h > 0 ? fmt::format("{:.3g}", s.setup.scheme.cfl * g.dx / c) : "none",
+             "about; cfl dx/wave speed"},
             {"closure", s.closure.set.name, s.closure.set.source}};
   }
 

@@ -22,7 +22,8 @@ constexpr double steady_rate = 1e-3;  // relative change of the mean velocity in
 class SphModel final : public Model {
  public:
   explicit SphModel(SphInput input) : in_(std::move(input)) {
-    state_.particles = on_plane() ? make_particles(in_.plane, in_.model) : make_particles(in_.column, in_.geometry, in_.model);
+    state_.particles =
+        on_plane() ? make_particles(in_.plane, in_.model) : make_particles(in_.column, in_.geometry, in_.model);
     initialise(state_, work_, in_.model);
   }
 
@@ -52,11 +53,19 @@ class SphModel final : public Model {
 
   std::vector<io::Column> series_columns() const override {
     if (on_plane())
-      return {{"t", "s", "time"}, {"dt", "s", "step"}, {"kinetic_energy", "J/m", "sum m v^2/2"}, {"u_mean", "m/s", "mean velocity down the slope"},
-              {"u_max", "m/s", "fastest particle"}, {"max_inertial_number", "", "largest i inside the flow so far"}};
-    return {{"t", "s", "time"}, {"dt", "s", "step"}, {"kinetic_energy", "J", "sum m v^2/2 (J/m planar)"},
-            {"front", "m", "reach of the connected material"}, {"front_raw", "m", "reach of the farthest particle"},
-            {"height", "m", "of the connected material"}, {"max_inertial_number", "", "largest i inside the flow so far"}};
+      return {{"t", "s", "time"},
+              {"dt", "s", "step"},
+              {"kinetic_energy", "J/m", "sum m v^2/2"},
+              {"u_mean", "m/s", "mean velocity down the slope"},
+              {"u_max", "m/s", "fastest particle"},
+              {"max_inertial_number", "", "largest i inside the flow so far"}};
+    return {{"t", "s", "time"},
+            {"dt", "s", "step"},
+            {"kinetic_energy", "J", "sum m v^2/2 (J/m planar)"},
+            {"front", "m", "reach of the connected material"},
+            {"front_raw", "m", "reach of the farthest particle"},
+            {"height", "m", "of the connected material"},
+            {"max_inertial_number", "", "largest i inside the flow so far"}};
   }
   std::vector<double> series_row() override {
     refresh(state_, work_, in_.model);
@@ -93,13 +102,17 @@ class SphModel final : public Model {
     file.attribute(group, "t", state_.time);
   }
 
-  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory, int number) override {
+  std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
+                                                             int number) override {
     const Points p = points();
     const std::string particles = fmt::format("particles_{:05d}.vtp", number);
     io::write_vtp_points(directory / particles, p.x,
-                         {{"id", std::span<const std::int64_t>(state_.particles.id)}, {"v", std::span<const Vec3>(p.v)},
-                          {"speed", std::span<const double>(p.speed)}, {"p", std::span<const double>(work_.pressure)},
-                          {"rho", std::span<const double>(state_.particles.rho)}, {"i", std::span<const double>(p.i)},
+                         {{"id", std::span<const std::int64_t>(state_.particles.id)},
+                          {"v", std::span<const Vec3>(p.v)},
+                          {"speed", std::span<const double>(p.speed)},
+                          {"p", std::span<const double>(work_.pressure)},
+                          {"rho", std::span<const double>(state_.particles.rho)},
+                          {"i", std::span<const double>(p.i)},
                           {"eta", std::span<const double>(work_.viscosity)}});
     return {{"particles", particles}};
   }
@@ -113,19 +126,28 @@ class SphModel final : public Model {
     std::vector<double> count(rows, 0.0), z(rows, 0.0), u(rows, 0.0), p(rows, 0.0), rho(rows, 0.0);
     const sph::Particles& q = state_.particles;
     for (std::size_t i = 0; i < q.mass.size(); ++i) {
-      const auto row = std::min(rows - 1, static_cast<std::size_t>(q.x[1][i] / in_.plane.height * static_cast<double>(rows)));
+      const auto row =
+          std::min(rows - 1, static_cast<std::size_t>(q.x[1][i] / in_.plane.height * static_cast<double>(rows)));
       count[row] += 1, z[row] += q.x[1][i], u[row] += q.v[0][i], p[row] += work_.pressure[i], rho[row] += q.rho[i];
     }
     for (std::size_t r = 0; r < rows; ++r) {
       if (count[r] == 0) continue;
       const double height = z[r] / count[r];
-      const double values[] = {height, u[r] / count[r], flow.velocity(height), p[r] / count[r],
-                               flow.pressure(height, in_.model.grains().grain_density), rho[r] / count[r]};
+      const double values[] = {height,
+                               u[r] / count[r],
+                               flow.velocity(height),
+                               p[r] / count[r],
+                               flow.pressure(height, in_.model.grains().grain_density),
+                               rho[r] / count[r]};
       for (std::size_t c = 0; c < 6; ++c) cells[c][r] = values[c];
     }
     io::write_csv(directory / "profile.csv",
-                  {{"z", "m", "height over the base"}, {"u_x", "m/s", "velocity down the slope"}, {"u_x_exact", "m/s", "eq. 56"},
-                   {"p", "Pa", "pressure"}, {"p_exact", "Pa", "hydrostatic"}, {"rho", "kg/m^3", "bulk density"}},
+                  {{"z", "m", "height over the base"},
+                   {"u_x", "m/s", "velocity down the slope"},
+                   {"u_x_exact", "m/s", "eq. 56"},
+                   {"p", "Pa", "pressure"},
+                   {"p_exact", "Pa", "hydrostatic"},
+                   {"rho", "kg/m^3", "bulk density"}},
                   cells, io::CsvHeader::names_and_units);
   }
 
@@ -165,13 +187,15 @@ class SphModel final : public Model {
 
   std::vector<Derived> derived() override {
     const sph::Model& m = in_.model;
-    return {{"particles", fmt::format("{}", state_.particles.size()), "number of particles"},
-            {"smoothing length", fmt::format("{:.4g} m", m.h()), "h"},
-            {"sound speed", fmt::format("{:.4g} m/s", m.sound_speed()), "c = 1/sqrt(Kt phi_max rho_s0)"},
-            {"Mach number", fmt::format("{:.3g}", std::sqrt(9.81 * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
-             "sqrt(g H)/c; 0.1 or less keeps compression small"},
-            {"largest viscosity over density", fmt::format("{:.4g} m^2/s", state_.max_kinematic_viscosity), "at the start"},
-            {"largest step", fmt::format("{:.3g} s", step_limit(state_, m)), "eq. 39; sound only when implicit"}};
+    return {
+        {"particles", fmt::format("{}", state_.particles.size()), "number of particles"},
+        {"smoothing length", fmt::format("{:.4g} m", m.h()), "h"},
+        {"sound speed", fmt::format("{:.4g} m/s", m.sound_speed()), "c = 1/sqrt(Kt phi_max rho_s0)"},
+        {"Mach number",
+         fmt::format("{:.3g}", std::sqrt(9.81 * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
+         "sqrt(g H)/c; 0.1 or less keeps compression small"},
+        {"largest viscosity over density", fmt::format("{:.4g} m^2/s", state_.max_kinematic_viscosity), "at the start"},
+        {"largest step", fmt::format("{:.3g} s", step_limit(state_, m)), "eq. 39; sound only when implicit"}};
   }
 
  private:
@@ -187,7 +211,9 @@ class SphModel final : public Model {
     const sph::Particles& p = state_.particles;
     Points out;
     for (std::size_t i = 0; i < p.mass.size(); ++i) {
-      const auto vector = [&](const sph::Field& f) { return in_.model.dim == 2 ? Vec3{f[0][i], 0, f[1][i]} : Vec3{f[0][i], f[1][i], f[2][i]}; };
+      const auto vector = [&](const sph::Field& f) {
+        return in_.model.dim == 2 ? Vec3{f[0][i], 0, f[1][i]} : Vec3{f[0][i], f[1][i], f[2][i]};
+      };
       out.x.push_back(vector(p.x));
       out.v.push_back(vector(p.v));
       out.speed.push_back(norm(out.v.back()));

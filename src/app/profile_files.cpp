@@ -43,7 +43,8 @@ void write_widths(const std::filesystem::path& file, const cg::BlockedProfile& p
       columns.push_back({"z", "length", "height above the base plane"});
       cells.push_back(p.z);
     }
-    columns.push_back({fmt::format("phi_w{:g}", w), "1", fmt::format("solid fraction with a kernel of width {:g} d", w)});
+    columns.push_back(
+        {fmt::format("phi_w{:g}", w), "1", fmt::format("solid fraction with a kernel of width {:g} d", w)});
     std::vector<double> phi(cells[0].size(), 0.0);
     const auto skip = static_cast<std::size_t>(std::llround((p.z[0] - cells[0][0]) / p.spacing));
     for (std::size_t n = 0; n < p.z.size() && n + skip < phi.size(); ++n) phi[n + skip] = p.value[n][cg::kVolume];
@@ -52,15 +53,18 @@ void write_widths(const std::filesystem::path& file, const cg::BlockedProfile& p
   if (!columns.empty()) io::write_csv(file, columns, cells, io::CsvHeader::names_and_units);
 }
 
-void write_steadiness(const std::filesystem::path& file, const cg::BlockedProfile& profile, const cg::FlowSetting& setting) {
+void write_steadiness(const std::filesystem::path& file, const cg::BlockedProfile& profile,
+                      const cg::FlowSetting& setting) {
   if (profile.complete_blocks() < 2) return;
   std::vector<std::vector<double>> cells(2);
   for (const cg::SteadinessPoint& point : cg::steadiness(profile, setting)) {
     cells[0].push_back(point.duration);
     cells[1].push_back(point.residual);
   }
-  io::write_csv(file, {{"duration", "time", "averaging time T"}, {"residual", "1", "depth-averaged norm of d(rho u)/dt over rho g"}}, cells,
-                io::CsvHeader::names_and_units);
+  io::write_csv(
+      file,
+      {{"duration", "time", "averaging time T"}, {"residual", "1", "depth-averaged norm of d(rho u)/dt over rho g"}},
+      cells, io::CsvHeader::names_and_units);
 }
 
 void add_flow_numbers(nlohmann::ordered_json& flow, const cg::FlowNumbers& numbers, const cg::FlowNumbers& errors) {
@@ -71,8 +75,10 @@ void add_flow_numbers(nlohmann::ordered_json& flow, const cg::FlowNumbers& numbe
 }
 
 void add_regime(nlohmann::ordered_json& flow, const cg::RegimeReport& report) {
-  if (report.regime) flow["regime"] = cg::name_of(*report.regime);
-  else flow["regime"] = nullptr;
+  if (report.regime)
+    flow["regime"] = cg::name_of(*report.regime);
+  else
+    flow["regime"] = nullptr;
   flow["energy_ratio"] = or_nan(report.energy_ratio);
   flow["energy_ratio_err"] = or_nan(report.energy_ratio_err);
   flow["energy_growth"] = or_nan(report.growth);

@@ -14,7 +14,8 @@ void write_profile(const std::filesystem::path& file, const cg::MeanProfile& pro
 // widths.csv: solid fraction for kernels of several widths, in grain diameters (figure 6). Nothing for kernels but the Gaussian.
 void write_widths(const std::filesystem::path& file, const cg::BlockedProfile& profile, double diameter);
 // steadiness.csv: momentum residual against averaging time (figure 5). Nothing with fewer than two blocks.
-void write_steadiness(const std::filesystem::path& file, const cg::BlockedProfile& profile, const cg::FlowSetting& setting);
+void write_steadiness(const std::filesystem::path& file, const cg::BlockedProfile& profile,
+                      const cg::FlowSetting& setting);
 
 // The numbers and, under <name>_err, their errors; null for what does not exist.
 void add_flow_numbers(nlohmann::ordered_json& flow, const cg::FlowNumbers& numbers, const cg::FlowNumbers& errors);

@@ -9,7 +9,10 @@
 namespace bagnold::app {
 
 Progress::Progress(double begin, double end, bool quiet)
-    : begin_(begin), end_(end), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0),
+    : begin_(begin),
+      end_(end),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0),
       color_(terminal_ && std::getenv("NO_COLOR") == nullptr) {}
 
 Progress::~Progress() {
@@ -34,8 +37,9 @@ void Progress::show(double time, const std::string& physics) {
   }
   constexpr int width = 24;
   const int full = static_cast<int>(done * width);
-  fmt::print(stderr, "\r{}[{}{}]{} {:3.0f} %  t = {:.5g}  {}  ETA {}\033[K", color_ ? "\033[36m" : "", std::string(static_cast<std::size_t>(full), '='),
-             std::string(static_cast<std::size_t>(width - full), ' '), color_ ? "\033[0m" : "", 100 * done, time, physics, eta);
+  fmt::print(stderr, "\r{}[{}{}]{} {:3.0f} %  t = {:.5g}  {}  ETA {}\033[K", color_ ? "\033[36m" : "",
+             std::string(static_cast<std::size_t>(full), '='), std::string(static_cast<std::size_t>(width - full), ' '),
+             color_ ? "\033[0m" : "", 100 * done, time, physics, eta);
   std::fflush(stderr);
 }
 

@@ -11,8 +11,8 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  bool due() const;                                       // worth asking the model for its numbers?
-  void show(double time, const std::string& physics);     // physics: a few words of the model
+  bool due() const;                                    // worth asking the model for its numbers?
+  void show(double time, const std::string& physics);  // physics: a few words of the model
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -27,24 +27,36 @@ closure::ClosureSet from_file(const std::string& path, const std::string& lambda
   const Section rules = root.child("flow_rule");
   const auto known = rules.keys();
   if (known.empty()) root.fail("flow_rule", "expected [flow_rule.<lambda>] with beta and gamma");
-  if (!rules.has(lambda)) rules.fail(lambda, fmt::format("no flow rule for lambda = {}; there are {}", lambda, fmt::join(known, ", ")));
+  if (!rules.has(lambda))
+    rules.fail(lambda, fmt::format("no flow rule for lambda = {}; there are {}", lambda, fmt::join(known, ", ")));
   const Section rule = rules.child(lambda);
   law.beta = rule.get<double>("beta", std::nullopt, positive());
   law.gamma = rule.get<double>("gamma", std::nullopt);
   if (rule.has("err")) set.flow_rule_error = rule.get<double>("err", std::nullopt, non_negative());
   set.friction = law;
-  set.static_branch = {.froude_star = std::max(0.0, law.beta - law.gamma), .delta1_deg = law.delta1_deg, .delta2_deg = law.delta2_deg,
-                       .delta3_deg = std::min(law.delta1_deg + 1, 89.0), .length = law.A * d};
+  set.static_branch = {.froude_star = std::max(0.0, law.beta - law.gamma),
+                       .delta1_deg = law.delta1_deg,
+                       .delta2_deg = law.delta2_deg,
+                       .delta3_deg = std::min(law.delta1_deg + 1, 89.0),
+                       .length = law.A * d};
   if (const Section s = root.child("density"); root.has("density"))
-    set.density = laws::ExponentialAngleDensity{s.get<double>("c0", std::nullopt, open(0, 1)), s.get<double>("c1_deg", std::nullopt, positive(), "deg"),
+    set.density = laws::ExponentialAngleDensity{s.get<double>("c0", std::nullopt, open(0, 1)),
+                                                s.get<double>("c1_deg", std::nullopt, positive(), "deg"),
                                                 s.get<double>("c2_deg", std::nullopt, any_number(), "deg")};
   if (const Section s = root.child("stress_ratio"); root.has("stress_ratio"))
-    set.stress_ratio = laws::LinearAngleStressRatio{s.get<double>("d0_deg", std::nullopt, positive(), "deg"), s.get<double>("d1_deg", std::nullopt, any_number(), "deg")};
+    set.stress_ratio = laws::LinearAngleStressRatio{s.get<double>("d0_deg", std::nullopt, positive(), "deg"),
+                                                    s.get<double>("d1_deg", std::nullopt, any_number(), "deg")};
   if (const Section s = root.child("shape_factor"); root.has("shape_factor")) {
-    if (s.has("alpha")) set.shape_factor = laws::ConstantShapeFactor{s.get<double>("alpha", std::nullopt, at_least(1))};
+    if (s.has("alpha"))
+      set.shape_factor = laws::ConstantShapeFactor{s.get<double>("alpha", std::nullopt, at_least(1))};
     else
-      set.shape_factor = laws::StrainModelShapeFactor{.base_layer = s.get<double>("base_layer", 6.678, non_negative(), "d"), .surface_layer = 5,
-                                                      .d = d, .delta1_deg = law.delta1_deg, .delta2_deg = law.delta2_deg, .A = law.A};
+      set.shape_factor =
+          laws::StrainModelShapeFactor{.base_layer = s.get<double>("base_layer", 6.678, non_negative(), "d"),
+                                       .surface_layer = 5,
+                                       .d = d,
+                                       .delta1_deg = law.delta1_deg,
+                                       .delta2_deg = law.delta2_deg,
+                                       .A = law.A};
   }
   set.validity = {law.delta1_deg, 29};
   if (const Section s = root.child("validity"); s.has("theta_deg")) {
@@ -68,7 +80,9 @@ closure::ClosureSet read_closure(const Case& input) {
     set = from_file(path.string(), s.get<std::string>("lambda", "1"), d, grain_density);
   } else if (name != "custom") {
     const auto known = closure::builtin(name, d, grain_density);
-    if (!known) s.fail("set", fmt::format("no closure set \"{}\"; expected custom, a .toml file, or one of {}", name, fmt::join(closure::builtin_names(), ", ")));
+    if (!known)
+      s.fail("set", fmt::format("no closure set \"{}\"; expected custom, a .toml file, or one of {}", name,
+                                fmt::join(closure::builtin_names(), ", ")));
     set = *known;
   }
   const bool custom = name == "custom";
@@ -80,8 +94,10 @@ closure::ClosureSet read_closure(const Case& input) {
   }
   if (s.has("static_branch")) set.static_branch = s.child("static_branch").read<laws::StaticBranch>();
   if (custom || s.has("density")) set.density = s.child("density").read_law<laws::DensityLaws>("law", "constant");
-  if (custom || s.has("stress_ratio")) set.stress_ratio = s.child("stress_ratio").read_law<laws::StressRatioLaws>("law", "constant");
-  if (custom || s.has("shape_factor")) set.shape_factor = s.child("shape_factor").read_law<laws::ShapeFactorLaws>("law", "constant");
+  if (custom || s.has("stress_ratio"))
+    set.stress_ratio = s.child("stress_ratio").read_law<laws::StressRatioLaws>("law", "constant");
+  if (custom || s.has("shape_factor"))
+    set.shape_factor = s.child("shape_factor").read_law<laws::ShapeFactorLaws>("law", "constant");
   return set;
 }
 

@@ -54,18 +54,22 @@ void read_channel(const Section& s, shallow::Definition& d) {
 void read_observers(const Section& s, ShallowInput& out) {
   const shallow::Grid& g = out.solver.setup.grid;
   for (const Section& item : s.list("gauges")) {
-    Gauge q{.x = item.get<double>("x", std::nullopt, any_number(), "length"), .y = item.get<double>("y", 0.0, any_number(), "length")};
+    Gauge q{.x = item.get<double>("x", std::nullopt, any_number(), "length"),
+            .y = item.get<double>("y", 0.0, any_number(), "length")};
     q.i = static_cast<int>(std::floor((q.x - g.x0) / g.dx));
     q.j = g.two_d() ? static_cast<int>(std::floor((q.y - g.y0) / g.dy)) : 0;
-    if (q.i < 0 || q.i >= g.nx || q.j < 0 || q.j >= g.ny) item.fail("x", fmt::format("the gauge ({}, {}) lies outside the grid", q.x, q.y));
+    if (q.i < 0 || q.i >= g.nx || q.j < 0 || q.j >= g.ny)
+      item.fail("x", fmt::format("the gauge ({}, {}) lies outside the grid", q.x, q.y));
     out.gauges.push_back(q);
   }
   for (const Section& item : s.list("sections")) {
     const auto a = item.get<std::vector<double>>("from", std::nullopt, any_number(), "length");
     const auto b = item.get<std::vector<double>>("to", std::nullopt, any_number(), "length");
-    if (a.size() != 2 || b.size() != 2 || !g.two_d()) item.fail("from", "a cross-section needs two points [x, y] and a two-dimensional grid");
+    if (a.size() != 2 || b.size() != 2 || !g.two_d())
+      item.fail("from", "a cross-section needs two points [x, y] and a two-dimensional grid");
     for (const auto& p : {a, b})
-      if (p[0] < g.x0 || p[0] > g.x0 + g.nx * g.dx || p[1] < g.y0 || p[1] > g.y0 + g.ny * g.dy) item.fail("from", "the cross-section leaves the grid");
+      if (p[0] < g.x0 || p[0] > g.x0 + g.nx * g.dx || p[1] < g.y0 || p[1] > g.y0 + g.ny * g.dy)
+        item.fail("from", "the cross-section leaves the grid");
     out.sections.push_back({a[0], a[1], b[0], b[1]});
   }
   out.impact_depth = s.get<double>("arrival_depth", 10 * out.solver.setup.scheme.dry_depth, positive(), "length");
@@ -82,9 +86,12 @@ ShallowInput read_unlocated(Case& input) {
   const Section sides = root.child("boundary");
   constexpr std::array<const char*, 4> names = {"left", "right", "bottom", "top"};
   for (std::size_t k = 0; k < 4; ++k) d.boundary[k] = read_boundary(sides, names[k]);
-  if (out.scenario == "incline") scenario::set_up(scenario.read<scenario::Incline>(), d);
-  else if (out.scenario == "run-out") scenario::set_up(scenario.read<scenario::RunOut>(), d);
-  else read_terrain(input, scenario, d, out);
+  if (out.scenario == "incline")
+    scenario::set_up(scenario.read<scenario::Incline>(), d);
+  else if (out.scenario == "run-out")
+    scenario::set_up(scenario.read<scenario::RunOut>(), d);
+  else
+    read_terrain(input, scenario, d, out);
   if (root.has("channel")) read_channel(root.child("channel"), d);
   read_scheme(root.child("scheme"), d.scheme, diameter);
 

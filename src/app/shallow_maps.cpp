@@ -86,7 +86,8 @@ void observe(const ShallowInput& in, ShallowMaps& m) {
       if (h[k] > in.impact_depth && std::isnan(m.arrival[c])) m.arrival[c] = in.state.time;
       if (speed > 0) {
         const double normal = s.closure.normal * (s.setup.terrain ? s.cosine[padded] : 1);
-        const double mu = std::visit([&](const auto& f) { return f.dynamic.mu(h[k], speed / std::sqrt(normal * h[k])); }, s.closure.friction);
+        const double mu = std::visit(
+            [&](const auto& f) { return f.dynamic.mu(h[k], speed / std::sqrt(normal * h[k])); }, s.closure.friction);
         if (mu < mu_lo || mu > mu_hi) m.outside[c] = 1;
       }
     }
@@ -94,20 +95,28 @@ void observe(const ShallowInput& in, ShallowMaps& m) {
 }
 
 std::vector<NamedArray> map_arrays(ShallowMaps& m) {
-  return {{"maps/max_h", &m.max_h}, {"maps/max_speed", &m.max_speed}, {"maps/max_pressure", &m.max_pressure},
-          {"maps/arrival", &m.arrival}, {"maps/outside", &m.outside}, {"maps/smallest_h", &m.smallest_h}, {"maps/largest_h", &m.largest_h}};
+  return {{"maps/max_h", &m.max_h},        {"maps/max_speed", &m.max_speed}, {"maps/max_pressure", &m.max_pressure},
+          {"maps/arrival", &m.arrival},    {"maps/outside", &m.outside},     {"maps/smallest_h", &m.smallest_h},
+          {"maps/largest_h", &m.largest_h}};
 }
 
 std::vector<io::Column> shallow_series_columns(const ShallowInput& in) {
-  std::vector<io::Column> c = {{"t", "time", "time"}, {"mass", "mass", "mass in the domain"}, {"mass_out", "mass", "mass that has left less what has entered"},
-                               {"mass_error_rel", "1", "relative error of the mass balance"}, {"front", "length", "largest x thicker than arrival_depth"},
-                               {"tail", "length", "smallest x thicker than arrival_depth"}, {"h_max", "length", "largest thickness"}, {"speed_max", "length/time", "largest speed"},
+  std::vector<io::Column> c = {{"t", "time", "time"},
+                               {"mass", "mass", "mass in the domain"},
+                               {"mass_out", "mass", "mass that has left less what has entered"},
+                               {"mass_error_rel", "1", "relative error of the mass balance"},
+                               {"front", "length", "largest x thicker than arrival_depth"},
+                               {"tail", "length", "smallest x thicker than arrival_depth"},
+                               {"h_max", "length", "largest thickness"},
+                               {"speed_max", "length/time", "largest speed"},
                                {"kinetic_energy", "energy", "sum of D u^2/2 over the domain"}};
   for (std::size_t k = 0; k < in.gauges.size(); ++k) {
-    c.push_back({fmt::format("gauge{}_h", k), "length", fmt::format("thickness at ({:g}, {:g})", in.gauges[k].x, in.gauges[k].y)});
+    c.push_back({fmt::format("gauge{}_h", k), "length",
+                 fmt::format("thickness at ({:g}, {:g})", in.gauges[k].x, in.gauges[k].y)});
     c.push_back({fmt::format("gauge{}_speed", k), "length/time", "speed there"});
   }
-  for (std::size_t k = 0; k < in.sections.size(); ++k) c.push_back({fmt::format("section{}_discharge", k), "length^3/time", "volume per time to the right of the line"});
+  for (std::size_t k = 0; k < in.sections.size(); ++k)
+    c.push_back({fmt::format("section{}_discharge", k), "length^3/time", "volume per time to the right of the line"});
   return c;
 }
 
@@ -128,7 +137,9 @@ std::vector<double> shallow_series_row(const ShallowInput& in, const ShallowMaps
       energy += 0.5 * in.state.now.D[p] * speed * speed * g.cell_area();
     }
   const double reference = std::max(initial_mass, mass);
-  std::vector<double> row = {in.state.time, mass, out, reference > 0 ? (mass + out - initial_mass) / reference : 0, front, tail, h_max, fastest, energy};
+  std::vector<double> row = {in.state.time, mass, out,   reference > 0 ? (mass + out - initial_mass) / reference : 0,
+                             front,         tail, h_max, fastest,
+                             energy};
   for (const Gauge& q : in.gauges) {
     const std::size_t c = flat(g, q.i, q.j);
     row.push_back(m.h[c]);
@@ -168,7 +179,9 @@ void write_shallow_vti(const std::filesystem::path& path, const ShallowInput& in
   std::vector<Vec3> velocity(m.h.size());
   for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] = {m.u[k], m.v[k], 0};
   io::write_vti(path, {.origin = {g.x0, g.y0, 0}, .spacing = {g.dx, g.dy, 1}, .cells = {g.nx, g.ny, 1}},
-                {{"thickness", std::span<const double>(m.h)}, {"velocity", std::span<const Vec3>(velocity)}, {"bed", std::span<const double>(bed)}});
+                {{"thickness", std::span<const double>(m.h)},
+                 {"velocity", std::span<const Vec3>(velocity)},
+                 {"bed", std::span<const double>(bed)}});
 }
 
 void write_shallow_results(const std::filesystem::path& directory, const ShallowInput& in, const ShallowMaps& m) {
@@ -178,20 +191,39 @@ void write_shallow_results(const std::filesystem::path& directory, const Shallow
     std::vector<double> x;
     for (int i = 0; i < g.nx; ++i) x.push_back(g.x(i));
     io::write_csv(directory / "final.csv",
-                  {{"x", "length", "centre of the cell"}, {"bed", "length", "elevation of the bed"}, {"h", "length", "thickness at the end"}, {"u", "length/time", "velocity at the end"},
-                   {"max_h", "length", "largest thickness"}, {"max_speed", "length/time", "largest speed"}, {"arrival", "time", "arrival"}, {"outside", "1", "1: closure used outside its range"}},
+                  {{"x", "length", "centre of the cell"},
+                   {"bed", "length", "elevation of the bed"},
+                   {"h", "length", "thickness at the end"},
+                   {"u", "length/time", "velocity at the end"},
+                   {"max_h", "length", "largest thickness"},
+                   {"max_speed", "length/time", "largest speed"},
+                   {"arrival", "time", "arrival"},
+                   {"outside", "1", "1: closure used outside its range"}},
                   {x, bed, m.h, m.u, m.max_h, m.max_speed, m.arrival, m.outside}, io::CsvHeader::names_and_units);
     return;
   }
-  io::write_vti(directory / "maps.vti", {.origin = {g.x0, g.y0, 0}, .spacing = {g.dx, g.dy, 1}, .cells = {g.nx, g.ny, 1}},
-                {{"deposit", std::span<const double>(m.h)}, {"max_thickness", std::span<const double>(m.max_h)}, {"max_speed", std::span<const double>(m.max_speed)},
-                 {"max_pressure", std::span<const double>(m.max_pressure)}, {"arrival_time", std::span<const double>(m.arrival)},
-                 {"outside_validity", std::span<const double>(m.outside)}, {"bed", std::span<const double>(bed)}});
+  io::write_vti(directory / "maps.vti",
+                {.origin = {g.x0, g.y0, 0}, .spacing = {g.dx, g.dy, 1}, .cells = {g.nx, g.ny, 1}},
+                {{"deposit", std::span<const double>(m.h)},
+                 {"max_thickness", std::span<const double>(m.max_h)},
+                 {"max_speed", std::span<const double>(m.max_speed)},
+                 {"max_pressure", std::span<const double>(m.max_pressure)},
+                 {"arrival_time", std::span<const double>(m.arrival)},
+                 {"outside_validity", std::span<const double>(m.outside)},
+                 {"bed", std::span<const double>(bed)}});
   if (!in.georeferenced) return;
   const std::vector<std::pair<const char*, const std::vector<double>*>> maps = {
-      {"max_thickness", &m.max_h}, {"max_speed", &m.max_speed}, {"max_pressure", &m.max_pressure}, {"arrival_time", &m.arrival}, {"deposit", &m.h}, {"outside_validity", &m.outside}};
+      {"max_thickness", &m.max_h},  {"max_speed", &m.max_speed}, {"max_pressure", &m.max_pressure},
+      {"arrival_time", &m.arrival}, {"deposit", &m.h},           {"outside_validity", &m.outside}};
   for (const auto& [name, values] : maps)
-    io::write_raster(directory / (std::string(name) + ".tif"), {.nx = g.nx, .ny = g.ny, .x0 = g.x0, .y0 = g.y0, .dx = g.dx, .dy = g.dy, .values = *values, .projection = in.projection});
+    io::write_raster(directory / (std::string(name) + ".tif"), {.nx = g.nx,
+                                                                .ny = g.ny,
+                                                                .x0 = g.x0,
+                                                                .y0 = g.y0,
+                                                                .dx = g.dx,
+                                                                .dy = g.dy,
+                                                                .values = *values,
+                                                                .projection = in.projection});
 }
 
 }  // namespace bagnold::app

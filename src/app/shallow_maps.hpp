@@ -20,12 +20,13 @@ struct ShallowMaps {
 };
 
 void start_maps(const ShallowInput& in, ShallowMaps& maps);
-void observe(const ShallowInput& in, ShallowMaps& maps);     // reads the state, changes only `maps`
+void observe(const ShallowInput& in, ShallowMaps& maps);  // reads the state, changes only `maps`
 std::vector<NamedArray> map_arrays(ShallowMaps& maps);
 
 std::vector<io::Column> shallow_series_columns(const ShallowInput& in);
 std::vector<double> shallow_series_row(const ShallowInput& in, const ShallowMaps& maps, double initial_mass);
-void write_shallow_snapshot(io::H5File& file, const std::string& group, const ShallowInput& in, const ShallowMaps& maps);
+void write_shallow_snapshot(io::H5File& file, const std::string& group, const ShallowInput& in,
+                            const ShallowMaps& maps);
 void write_shallow_vti(const std::filesystem::path& path, const ShallowInput& in, const ShallowMaps& maps);
 // final.csv (one dimension), maps.vti, and GeoTIFFs in the coordinate system of the terrain.
 void write_shallow_results(const std::filesystem::path& directory, const ShallowInput& in, const ShallowMaps& maps);

@@ -21,13 +21,18 @@ void read_terrain(const Case& input, const Section& section, shallow::Definition
   const double g = section.get<double>("gravity", 9.81, positive(), "length/time^2");
   for (std::size_t k = 0; k < raster.values.size(); ++k)
     if (!std::isfinite(raster.values[k]))
-      section.fail("elevation", fmt::format("no data at column {}, row {} from the south; fill the raster or crop it", k % static_cast<std::size_t>(raster.nx), k / static_cast<std::size_t>(raster.nx)));
+      section.fail("elevation",
+                   fmt::format("no data at column {}, row {} from the south; fill the raster or crop it",
+                               k % static_cast<std::size_t>(raster.nx), k / static_cast<std::size_t>(raster.nx)));
   d.grid = {.nx = raster.nx, .ny = raster.ny, .x0 = raster.x0, .y0 = raster.y0, .dx = raster.dx, .dy = raster.dy};
   d.gravity = {.normal = g, .slope_x = 0, .slope_y = 0, .g = g};
   d.terrain = true;
   d.bed.assign(static_cast<std::size_t>(d.grid.padded()), 0.0);
   for (int j = 0; j < raster.ny; ++j)
-    for (int i = 0; i < raster.nx; ++i) d.bed[d.grid.at(i, j)] = raster.values[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.nx) + static_cast<std::size_t>(i)];
+    for (int i = 0; i < raster.nx; ++i)
+      d.bed[d.grid.at(i, j)] =
+          raster
+              .values[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.nx) + static_cast<std::size_t>(i)];
   out.projection = raster.projection;
   out.georeferenced = true;
 }
@@ -36,16 +41,24 @@ void release_on_terrain(const Case& input, const Section& s, ShallowInput& out) 
   const shallow::Grid& g = out.solver.setup.grid;
   const std::string direction = s.choose("direction", "normal", {"normal", "vertical"});
   std::vector<double> h(static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.ny), 0.0);
-  const auto cell = [&](int i, int j) -> double& { return h[static_cast<std::size_t>(j) * static_cast<std::size_t>(g.nx) + static_cast<std::size_t>(i)]; };
+  const auto cell = [&](int i, int j) -> double& {
+    return h[static_cast<std::size_t>(j) * static_cast<std::size_t>(g.nx) + static_cast<std::size_t>(i)];
+  };
   if (s.has("raster")) {
     const io::Raster r = io::read_raster(file_of(input, s, "raster"));
-    if (!io::same_projection(r.projection, out.projection)) s.fail("raster", "its projection is not that of the terrain");
-    if (r.nx != g.nx || r.ny != g.ny || std::abs(r.x0 - g.x0) > 1e-6 * g.dx || std::abs(r.y0 - g.y0) > 1e-6 * g.dy || std::abs(r.dx / g.dx - 1) > 1e-9)
-      s.fail("raster", fmt::format("its grid ({} x {} cells of {} at {}, {}) is not that of the terrain ({} x {} of {} at {}, {})", r.nx, r.ny, r.dx, r.x0, r.y0, g.nx, g.ny, g.dx, g.x0, g.y0));
+    if (!io::same_projection(r.projection, out.projection))
+      s.fail("raster", "its projection is not that of the terrain");
+    if (r.nx != g.nx || r.ny != g.ny || std::abs(r.x0 - g.x0) > 1e-6 * g.dx || std::abs(r.y0 - g.y0) > 1e-6 * g.dy ||
+        std::abs(r.dx / g.dx - 1) > 1e-9)
+      s.fail(
+          "raster",
+          fmt::format("its grid ({} x {} cells of {} at {}, {}) is not that of the terrain ({} x {} of {} at {}, {})",
+                      r.nx, r.ny, r.dx, r.x0, r.y0, g.nx, g.ny, g.dx, g.x0, g.y0));
     for (std::size_t k = 0; k < h.size(); ++k) h[k] = std::isfinite(r.values[k]) ? r.values[k] : 0;
   } else {
     const io::PolygonLayer layer = io::read_polygons(file_of(input, s, "polygons"));
-    if (!io::same_projection(layer.projection, out.projection)) s.fail("polygons", "their projection is not that of the terrain");
+    if (!io::same_projection(layer.projection, out.projection))
+      s.fail("polygons", "their projection is not that of the terrain");
     const auto thickness = s.get_auto("thickness", positive(), "length");
     for (const io::Polygon& p : layer.polygons) {
       const auto t = p.thickness ? p.thickness : thickness;

@@ -25,9 +25,9 @@ SphInput read_sph(config::Case& input) {
   in.model.kernel = numerics.read_law<laws::SphKernels>("kernel", "minatti2015");
   in.model.viscous = numerics.read_law<laws::ViscousOperators>("operator", "minatti2015");
   in.model.mean = numerics.read_law<laws::ViscosityMeans>("mean", "minatti2015");
-  const std::string stepping =
-      numerics.choose("stepping", in.model.corrected() ? "implicit" : "minatti2015", {"minatti2015", "implicit", "explicit_euler"});
-  in.model.stepping = stepping == "implicit" ? sph::Stepping::implicit
+  const std::string stepping = numerics.choose("stepping", in.model.corrected() ? "implicit" : "minatti2015",
+                                               {"minatti2015", "implicit", "explicit_euler"});
+  in.model.stepping = stepping == "implicit"         ? sph::Stepping::implicit
                       : stepping == "explicit_euler" ? sph::Stepping::explicit_euler
                                                      : sph::Stepping::minatti2015;
   in.scenario = scene.choose("kind", std::nullopt, {"inclined_plane", "column"});
@@ -37,7 +37,7 @@ SphInput read_sph(config::Case& input) {
   } else {
     in.column = scene.read<scenario::ContinuumColumn>();
     const std::string shape = scene.choose("geometry", "planar", {"planar", "axisymmetric", "cylinder"});
-    in.geometry = shape == "planar" ? scenario::ColumnGeometry::planar
+    in.geometry = shape == "planar"         ? scenario::ColumnGeometry::planar
                   : shape == "axisymmetric" ? scenario::ColumnGeometry::axisymmetric
                                             : scenario::ColumnGeometry::cylinder;
     set_geometry(in.column, in.geometry, in.model);

@@ -11,7 +11,7 @@
 namespace bagnold::app {
 
 struct SphInput {
-  std::string scenario;                 // "inclined_plane" or "column"
+  std::string scenario;  // "inclined_plane" or "column"
   scenario::InclinedPlane plane;
   scenario::ContinuumColumn column;
   scenario::ColumnGeometry geometry = scenario::ColumnGeometry::planar;

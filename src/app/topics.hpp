@@ -9,7 +9,7 @@
 namespace bagnold::app {
 
 struct Topic {
-  std::string family;   // "normal contact law (contact.normal)"
+  std::string family;  // "normal contact law (contact.normal)"
   std::string name, summary, text;
 };
 

@@ -36,7 +36,9 @@ struct CgOptions {
 
 laws::CgKernels::Any kernel_of(const CgOptions& o, const cg::StoredSnapshot& first) {
   const auto made = laws::CgKernels::make(o.kernel);
-  if (!made) throw InputError(fmt::format("error: no kernel is called '{}', expected one of {}", o.kernel, fmt::join(laws::CgKernels::names(), ", ")));
+  if (!made)
+    throw InputError(fmt::format("error: no kernel is called '{}', expected one of {}", o.kernel,
+                                 fmt::join(laws::CgKernels::names(), ", ")));
   auto kernel = *made;
   const double d = first.diameter.empty() ? 1 : first.diameter[0];
   std::visit([&](auto& k) { k.width = o.width > 0 ? o.width : 0.25 * d; }, kernel);
@@ -52,7 +54,7 @@ double width_of(const laws::CgKernels::Any& kernel) {
 struct Profiles {
   std::optional<cg::BlockedProfile> average;
   double diameter = 1;
-  std::vector<std::vector<double>> series;   // t, z, fields
+  std::vector<std::vector<double>> series;  // t, z, fields
 };
 
 void add_to_series(Profiles& p, const CgOptions& o, const cg::StoredSnapshot& s) {
@@ -141,7 +143,8 @@ void write_fields(Fields& f, const CgOptions& o) {
   for (const cg::FieldDefinition& field : cg::all_fields()) {
     columns.push_back({field.name, field.unit, field.meaning});
     auto& column = cells.emplace_back();
-    for (std::size_t n = 0; n < f.sums.size(); ++n) column.push_back(field.value({f.sums[n], gradients[n], width_of(f.kernel), least}));
+    for (std::size_t n = 0; n < f.sums.size(); ++n)
+      column.push_back(field.value({f.sums[n], gradients[n], width_of(f.kernel), least}));
   }
   io::write_csv(fs::path(o.directory) / "fields.csv", columns, cells, io::CsvHeader::names_and_units);
 }
@@ -168,8 +171,10 @@ int coarse_grain(const CgOptions& o) {
   std::error_code failed;
   fs::create_directories(o.directory, failed);
   if (failed) throw IoError(fmt::format("{}: cannot be created: {}", o.directory, failed.message()));
-  if (o.grid == "z") write_profiles(profiles, o, info.gravity);
-  else write_fields(fields, o);
+  if (o.grid == "z")
+    write_profiles(profiles, o, info.gravity);
+  else
+    write_fields(fields, o);
   fmt::print("{}: averages over {} instants\n", o.directory, samples);
   return 0;
 }
@@ -179,10 +184,12 @@ int coarse_grain(const CgOptions& o) {
 void add_cg(CLI::App& cli, int& exit_code) {
   CLI::App* verb = cli.add_subcommand("cg", "Coarse-grain stored runs: own, LAMMPS dumps, MercuryDPM files");
   const auto o = std::make_shared<CgOptions>();
-  verb->add_option("INPUT", o->inputs, "Run directories, run.h5, LAMMPS dumps (atoms, then contacts), MercuryDPM .data")->required();
+  verb->add_option("INPUT", o->inputs, "Run directories, run.h5, LAMMPS dumps (atoms, then contacts), MercuryDPM .data")
+      ->required();
   verb->add_option("-o,--output", o->directory, "Where results go (default: cg)");
   verb->add_option("--kernel", o->kernel, "gaussian, lucy or heaviside");
-  verb->add_option("--width", o->width, "Standard deviation of the kernel (default: a quarter of the first diameter)")->check(CLI::PositiveNumber);
+  verb->add_option("--width", o->width, "Standard deviation of the kernel (default: a quarter of the first diameter)")
+      ->check(CLI::PositiveNumber);
   verb->add_option("--spacing", o->spacing, "Distance of the nodes")->check(CLI::PositiveNumber);
   verb->add_option("--grid", o->grid, "z (profiles), xz or xyz")->check(CLI::IsMember({"z", "xz", "xyz"}));
   verb->add_option("--from", o->from, "First time to use");
@@ -190,10 +197,15 @@ void add_cg(CLI::App& cli, int& exit_code) {
   verb->add_flag("--intervals", o->intervals, "Profiles of means over intervals instead of values at nodes");
   verb->add_flag("--series", o->series, "Also the profile of every instant (profiles.csv)");
   verb->add_option("--gravity", o->gravity, "gx gy gz, for the flow numbers of foreign files")->expected(3);
-  verb->add_option("--base-types", o->foreign.base_types, "LAMMPS types or MercuryDPM species that do not flow")->delimiter(',');
-  verb->add_option("--density", o->foreign.density, "Of the grains, where the files hold no masses")->check(CLI::PositiveNumber);
-  verb->add_option("--timestep", o->foreign.timestep, "Of LAMMPS, where the dump holds no times")->check(CLI::PositiveNumber);
-  verb->add_option("--contact-columns", o->foreign.contact_columns, "Columns of the local dump, for example id1,id2,fx,fy,fz,tx,ty,tz")->delimiter(',');
+  verb->add_option("--base-types", o->foreign.base_types, "LAMMPS types or MercuryDPM species that do not flow")
+      ->delimiter(',');
+  verb->add_option("--density", o->foreign.density, "Of the grains, where the files hold no masses")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--timestep", o->foreign.timestep, "Of LAMMPS, where the dump holds no times")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--contact-columns", o->foreign.contact_columns,
+                   "Columns of the local dump, for example id1,id2,fx,fy,fz,tx,ty,tz")
+      ->delimiter(',');
   verb->add_option("--threads", o->threads, "Threads (the result does not depend on it)")->check(CLI::PositiveNumber);
   verb->callback([o, &exit_code] { exit_code = coarse_grain(*o); });
 }

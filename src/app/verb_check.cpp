@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "app/model.hpp"
 #include "app/driver.hpp"
+#include "app/model.hpp"
 #include "app/verbs.hpp"
 #include "config/case.hpp"
 #include "core/parallel.hpp"

@@ -40,7 +40,8 @@ int explain(const std::string& name) {
 }  // namespace
 
 void add_explain(CLI::App& cli, int& exit_code) {
-  CLI::App* verb = cli.add_subcommand("explain", "A law, scenario or section: equation, source, parameters with unit and range");
+  CLI::App* verb =
+      cli.add_subcommand("explain", "A law, scenario or section: equation, source, parameters with unit and range");
   const auto name = std::make_shared<std::string>();
   verb->add_option("NAME", *name, "What to explain (default: list everything)");
   verb->callback([name, &exit_code] { exit_code = explain(*name); });

@@ -30,10 +30,13 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
   std::error_code failed;
   if (fs::exists(directory, failed) && !fs::is_empty(directory, failed)) {
     const bool is_run = fs::exists(directory / "case.toml");
-    if (!is_run) throw InputError(fmt::format("{}: error: exists and is not a run directory, expected a new one", directory.string()));
+    if (!is_run)
+      throw InputError(
+          fmt::format("{}: error: exists and is not a run directory, expected a new one", directory.string()));
     if (!overwrite)
-      throw InputError(fmt::format("{}: error: holds a run already, expected a new directory, --overwrite, or 'bagnold resume {}'",
-                                   directory.string(), directory.string()));
+      throw InputError(
+          fmt::format("{}: error: holds a run already, expected a new directory, --overwrite, or 'bagnold resume {}'",
+                      directory.string(), directory.string()));
     for (const char* name : {"case.toml", "summary.json", "series.csv", "profile.csv", "run.h5", "checkpoint.h5",
                              "checkpoint.prev.h5", "report.html", "vtk", "figures"})
       fs::remove_all(directory / name, failed);
@@ -81,7 +84,8 @@ int resume(const RunOptions& options) {
   set_threads(options.threads);
   const fs::path directory = options.input;
   if (!fs::exists(directory / "case.toml"))
-    throw InputError(fmt::format("{}: error: is not a run directory (no case.toml), expected the DIR of 'bagnold run -o DIR'", options.input));
+    throw InputError(fmt::format(
+        "{}: error: is not a run directory (no case.toml), expected the DIR of 'bagnold run -o DIR'", options.input));
   config::Case input = config::Case::from_file((directory / "case.toml").string());
   const auto model = make_model(input);
   RunContext context = read_context(input, *model, directory, options.quiet);
@@ -97,7 +101,8 @@ void add_run(CLI::App& cli, int& exit_code) {
   verb->add_option("CASE", options->input, "Case file (.toml)")->required();
   verb->add_option("-o,--output", options->directory, "Run directory (default: out/<name of the case>)");
   verb->add_option("--set", options->set, "Override a key: key.path=value (repeatable)")->allow_extra_args(false);
-  verb->add_option("--threads", options->threads, "Threads (default: OMP_NUM_THREADS, SLURM_CPUS_PER_TASK, all cores)")->check(CLI::PositiveNumber);
+  verb->add_option("--threads", options->threads, "Threads (default: OMP_NUM_THREADS, SLURM_CPUS_PER_TASK, all cores)")
+      ->check(CLI::PositiveNumber);
   verb->add_flag("--overwrite", options->overwrite, "Replace the run that the directory holds");
   verb->add_flag("--quiet", options->quiet, "No progress");
   verb->callback([options, &exit_code] { exit_code = run(*options); });
@@ -107,7 +112,8 @@ void add_resume(CLI::App& cli, int& exit_code) {
   CLI::App* verb = cli.add_subcommand("resume", "Continue exactly where a run was interrupted or killed");
   const auto options = std::make_shared<RunOptions>();
   verb->add_option("DIR", options->input, "Run directory")->required();
-  verb->add_option("--threads", options->threads, "Threads (the result does not depend on it)")->check(CLI::PositiveNumber);
+  verb->add_option("--threads", options->threads, "Threads (the result does not depend on it)")
+      ->check(CLI::PositiveNumber);
   verb->add_flag("--quiet", options->quiet, "No progress");
   verb->callback([options, &exit_code] { exit_code = resume(*options); });
 }

@@ -16,8 +16,10 @@ void add_items(std::vector<double>& to, const std::vector<double>& items, std::s
 
 }  // namespace
 
-BlockedProfile::BlockedProfile(const laws::CgKernels::Any& kernel, double spacing, const Box& box, std::int64_t samples_expected)
-    : current_(make_moments(kernel, make_lattice(kernel, spacing), box)), closed_(current_),
+BlockedProfile::BlockedProfile(const laws::CgKernels::Any& kernel, double spacing, const Box& box,
+                               std::int64_t samples_expected)
+    : current_(make_moments(kernel, make_lattice(kernel, spacing), box)),
+      closed_(current_),
       block_samples_(std::max<std::int64_t>(1, (samples_expected + most_blocks - 1) / most_blocks)) {}
 
 void BlockedProfile::begin_sample(double time) {
@@ -48,7 +50,8 @@ std::int64_t BlockedProfile::samples() const { return current_.samples + closed_
 // outermost row continues, without slope.
 void BlockedProfile::widen(const NodeRange& range) {
   const std::int64_t lo = count_ == 0 ? range.first : std::min(first_, range.first);
-  const std::int64_t hi = count_ == 0 ? range.first + range.count : std::max(first_ + count_, range.first + range.count);
+  const std::int64_t hi =
+      count_ == 0 ? range.first + range.count : std::max(first_ + count_, range.first + range.count);
   if (count_ > 0 && lo == first_ && hi == first_ + count_) return;
   std::vector<double> wide;
   wide.reserve(static_cast<std::size_t>(complete_blocks() * (hi - lo)) * row_size);
@@ -57,8 +60,10 @@ void BlockedProfile::widen(const NodeRange& range) {
       const std::int64_t from = std::clamp(n, first_, first_ + count_ - 1);
       const auto row = rows_.begin() + (b * count_ + from - first_) * static_cast<std::int64_t>(row_size);
       wide.insert(wide.end(), row, row + kChannels);
-      if (from == n) wide.insert(wide.end(), row + kChannels, row + row_size);
-      else wide.insert(wide.end(), kChannels, 0.0);
+      if (from == n)
+        wide.insert(wide.end(), row + kChannels, row + row_size);
+      else
+        wide.insert(wide.end(), kChannels, 0.0);
     }
   rows_ = std::move(wide);
   first_ = lo;
@@ -73,16 +78,19 @@ void BlockedProfile::close_block() {
     rows_.insert(rows_.end(), sums.slope[n].begin(), sums.slope[n].end());
   }
   const Vec3& f = current_.base_force;
-  scalars_.insert(scalars_.end(), {begin_, end_, static_cast<double>(current_.samples), current_.contacts, f.x, f.y, f.z});
+  scalars_.insert(scalars_.end(),
+                  {begin_, end_, static_cast<double>(current_.samples), current_.contacts, f.x, f.y, f.z});
   add_moments(closed_, current_);
   clear(current_);
   if (complete_blocks() == most_blocks) merge_neighbours();
 }
 
 void BlockedProfile::merge_neighbours() {
-  const std::size_t size = static_cast<std::size_t>(count_) * row_size, n = static_cast<std::size_t>(complete_blocks()) / 2;
+  const std::size_t size = static_cast<std::size_t>(count_) * row_size,
+                    n = static_cast<std::size_t>(complete_blocks()) / 2;
   for (std::size_t b = 0; b < n; ++b) {
-    for (std::size_t k = 0; k < size; ++k) rows_[b * size + k] = rows_[2 * b * size + k] + rows_[(2 * b + 1) * size + k];
+    for (std::size_t k = 0; k < size; ++k)
+      rows_[b * size + k] = rows_[2 * b * size + k] + rows_[(2 * b + 1) * size + k];
     double* to = scalars_.data() + b * scalars_per_block;
     const double *one = scalars_.data() + 2 * b * scalars_per_block, *two = one + scalars_per_block;
     const double begin = one[0], end = two[1];
@@ -126,7 +134,8 @@ MeanProfile BlockedProfile::mean(std::int64_t first, std::int64_t blocks) const 
 
 MeanProfile BlockedProfile::mean_without(std::int64_t first, std::int64_t blocks) const {
   std::vector<double> rows(static_cast<std::size_t>(count_) * row_size), scalars(scalars_per_block);
-  for (const auto& [begin, end] : {std::pair<std::int64_t, std::int64_t>{0, first}, {first + blocks, complete_blocks()}}) {
+  for (const auto& [begin, end] :
+       {std::pair<std::int64_t, std::int64_t>{0, first}, {first + blocks, complete_blocks()}}) {
     add_items(rows, rows_, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
     add_items(scalars, scalars_, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
   }
@@ -171,7 +180,8 @@ MeanProfile BlockedProfile::mean_with_width(double width) const {
   ProfileMoments all = all_moments();
   const auto* own = std::get_if<laws::CgGaussian>(&all.kernel);
   if (!own || width < own->width / 8)
-    throw UnphysicalError("cg.width", "profiles of another width need a Gaussian kernel and at least an eighth of its width");
+    throw UnphysicalError("cg.width",
+                          "profiles of another width need a Gaussian kernel and at least an eighth of its width");
   all.kernel = laws::CgGaussian{width};
   return mean_of(all, false);
 }

@@ -9,7 +9,8 @@ namespace bagnold::cg {
 
 // Writes channels [0, kCarried) of a grain of mass m, moment of inertia I and diameter d; `nn` is the sum of n_a n_b over its
 // contacts (xx xy xz yy yz zz).
-inline void carried_by_grain(double* __restrict q, double m, double I, double d, const Vec3& v, const Vec3& omega, const double* nn) {
+inline void carried_by_grain(double* __restrict q, double m, double I, double d, const Vec3& v, const Vec3& omega,
+                             const double* nn) {
   const double volume = std::numbers::pi / 6 * d * d * d;
   q[kMass] = m;
   q[kMomentum + 0] = m * v.x;

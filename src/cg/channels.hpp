@@ -27,8 +27,8 @@ enum Channel : std::size_t {
   kContact = 23,     // contact stress, row-major a, b
   kBase = 32,        // stress of the base contacts, row-major a, b
   kChannels = 41,
-  kCarried = kContact,     // channels before this one are carried by grains
-  kFlowing = kBase,        // channels before this one come from flowing grains and their mutual contacts
+  kCarried = kContact,  // channels before this one are carried by grains
+  kFlowing = kBase,     // channels before this one come from flowing grains and their mutual contacts
 };
 
 using Row = std::array<double, kChannels>;

@@ -16,7 +16,7 @@
 namespace bagnold::cg {
 namespace {
 
-constexpr std::size_t contact_row = 16;       // doubles per grain: 9 stress, 6 fabric, 1 unused
+constexpr std::size_t contact_row = 16;  // doubles per grain: 9 stress, 6 fabric, 1 unused
 constexpr std::size_t flow_width = kFlowing, base_width = kChannels - kBase;
 
 // Eight channels at once; the compiler maps it to the vectors of the machine.
@@ -30,26 +30,25 @@ struct SnapshotGrains {
   std::int64_t flowing() const { return s.flowing; }
   double z(std::size_t i) const { return s.x[i].z; }
   double diameter(std::size_t i) const { return s.diameter[i]; }
-  void carried(double* q, std::size_t i, const double* nn) const {
-    carried_by_grain(q, s, i, nn);
-  }
+  void carried(double* q, std::size_t i, const double* nn) const { carried_by_grain(q, s, i, nn); }
 };
 struct StateGrains {
   const dem::DemState& s;
-  double half;   // velocities are half a step behind once it moves
+  double half;  // velocities are half a step behind once it moves
   std::int64_t flowing() const { return s.grains.flowing; }
   double z(std::size_t i) const { return s.grains.x[i].z; }
   double diameter(std::size_t i) const { return s.grains.diameter[i]; }
   void carried(double* q, std::size_t i, const double* nn) const {
     const dem::Grains& g = s.grains;
-    const Vec3 v = g.v[i] + half * (g.force[i] / g.mass[i] + s.gravity), omega = g.omega[i] + (half / g.inertia[i]) * g.torque[i];
+    const Vec3 v = g.v[i] + half * (g.force[i] / g.mass[i] + s.gravity),
+               omega = g.omega[i] + (half / g.inertia[i]) * g.torque[i];
     carried_by_grain(q, g.mass[i], g.inertia[i], g.diameter[i], v, omega, nn);
   }
 };
 
 struct Place {
   std::int64_t bin;
-  double delta;   // z minus the centre of the bin
+  double delta;  // z minus the centre of the bin
 };
 
 Place place(const ProfileMoments& p, double z, double per_bin) {
@@ -94,9 +93,11 @@ void add_base_contact(ProfileMoments& p, const Grains& grains, const Contact& c,
   const Vec3 arm = arm_from_contact(grains.diameter(i), c), f = c.force;
   const bool is_level = std::abs(arm.z) < level;
   const double per_z = is_level ? 0 : 1 / arm.z;
-  std::array<double, base_width> q{f.x * arm.x * per_z, f.x * arm.y * per_z, f.x, f.y * arm.x * per_z, f.y * arm.y * per_z, f.y,
+  std::array<double, base_width> q{f.x * arm.x * per_z, f.x * arm.y * per_z, f.x,
+                                   f.y * arm.x * per_z, f.y * arm.y * per_z, f.y,
                                    f.z * arm.x * per_z, f.z * arm.y * per_z, f.z};
-  const Place top = place(p, z, per_bin), bottom = place(p, z - arm.z, per_bin), middle = place(p, z - 0.5 * arm.z, per_bin);
+  const Place top = place(p, z, per_bin), bottom = place(p, z - arm.z, per_bin),
+              middle = place(p, z - 0.5 * arm.z, per_bin);
   for (const Place& at : {top, bottom, middle}) cover(p.base, at.bin, z);
   deposit_base<terms>(bin_data(p.base, top.bin), top.delta, q);
   if (is_level) {
@@ -111,8 +112,8 @@ void add_base_contact(ProfileMoments& p, const Grains& grains, const Contact& c,
 
 // Gives every flowing grain its share of the contact stress (C_i of the sheet) and its fabric.
 template <int terms, class Grains, class Contact>
-void gather_contacts(ProfileMoments& p, const Grains& grains, std::span<const Contact> contacts, double* rows, double per_bin,
-                     double level) {
+void gather_contacts(ProfileMoments& p, const Grains& grains, std::span<const Contact> contacts, double* rows,
+                     double per_bin, double level) {
   const Lanes opposite{-1, 1, 1, 1, 1, 1, 1, 1};
   for (const Contact& c : contacts) {
     double* to_i = rows + contact_row * static_cast<std::size_t>(c.i);
@@ -161,12 +162,13 @@ void sort_by_bin(ProfileMoments& p, const Grains& grains, ProfileScratch& w) {
     w.bin[i] = static_cast<std::int32_t>(at.bin - first);
     w.delta[i] = at.delta;
   }
-  const auto shift = static_cast<std::int32_t>(first - p.flow.first);   // by what the bins grew downwards
+  const auto shift = static_cast<std::int32_t>(first - p.flow.first);  // by what the bins grew downwards
   w.begin.assign(static_cast<std::size_t>(p.flow.count) + 2, 0);
   const auto place_of = [&](std::size_t i) { return static_cast<std::size_t>(w.bin[i] + shift); };
   for (std::size_t i = 0; i < n; ++i) ++w.begin[place_of(i) + 2];
   for (std::size_t b = 2; b < w.begin.size(); ++b) w.begin[b] += w.begin[b - 1];
-  for (std::size_t i = 0; i < n; ++i) w.order[static_cast<std::size_t>(w.begin[place_of(i) + 1]++)] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < n; ++i)
+    w.order[static_cast<std::size_t>(w.begin[place_of(i) + 1]++)] = static_cast<std::int32_t>(i);
 }
 
 // Grains of one bin, a few at a time: what they carry and their powers (-delta)^k/k!. Small enough for the first-level cache.
@@ -188,7 +190,13 @@ void fill(Batch& batch, const Grains& grains, const ProfileScratch& w, double* r
     q[kContact + 8] = from_contacts[8];
     lanes(from_contacts) = lanes(from_contacts + 8) = Lanes{};
     const double d = w.delta[i], d2 = d * d, d3 = d2 * d, d4 = d2 * d2;
-    batch.powers[g] = {1, -d, d2 * (1.0 / 2), d3 * (-1.0 / 6), d4 * (1.0 / 24), d4 * d * (-1.0 / 120), d4 * d2 * (1.0 / 720),
+    batch.powers[g] = {1,
+                       -d,
+                       d2 * (1.0 / 2),
+                       d3 * (-1.0 / 6),
+                       d4 * (1.0 / 24),
+                       d4 * d * (-1.0 / 120),
+                       d4 * d2 * (1.0 / 720),
                        d4 * d3 * (-1.0 / 5040)};
   }
 }
@@ -216,12 +224,14 @@ template <int terms, class Grains, class Contacts>
 void add(ProfileMoments& p, const Grains& grains, const Contacts& for_each_batch, ProfileScratch& w, double level) {
   const double per_bin = 1 / p.lattice.bin();
   sort_by_bin(p, grains, w);
-  std::vector<double> rows = std::move(w.of_contacts);   // not left half full if a contact is too far away
+  std::vector<double> rows = std::move(w.of_contacts);  // not left half full if a contact is too far away
   rows.resize(contact_row * static_cast<std::size_t>(grains.flowing()));
-  for_each_batch([&](const auto& contacts) { gather_contacts<terms>(p, grains, contacts, rows.data(), per_bin, level); });
+  for_each_batch(
+      [&](const auto& contacts) { gather_contacts<terms>(p, grains, contacts, rows.data(), per_bin, level); });
   Batch batch;
   for (std::size_t b = 0; b < static_cast<std::size_t>(p.flow.count); ++b)
-    for (auto first = static_cast<std::size_t>(w.begin[b]); first < static_cast<std::size_t>(w.begin[b + 1]); first += Batch::most) {
+    for (auto first = static_cast<std::size_t>(w.begin[b]); first < static_cast<std::size_t>(w.begin[b + 1]);
+         first += Batch::most) {
       const std::size_t count = std::min(Batch::most, static_cast<std::size_t>(w.begin[b + 1]) - first);
       fill(batch, grains, w, rows.data(), first, count);
       deposit_batch<terms>(p.flow.data.data() + b * terms * flow_width, batch, count);
@@ -232,18 +242,24 @@ void add(ProfileMoments& p, const Grains& grains, const Contacts& for_each_batch
 
 template <class Grains, class Contacts>
 void add(ProfileMoments& p, const Grains& grains, const Contacts& contacts, ProfileScratch& scratch) {
-  std::visit([&](const auto& k) { add<std::decay_t<decltype(k)>::expansion_terms>(p, grains, contacts, scratch, 2e-3 * k.width); }, p.kernel);
+  std::visit(
+      [&](const auto& k) {
+        add<std::decay_t<decltype(k)>::expansion_terms>(p, grains, contacts, scratch, 2e-3 * k.width);
+      },
+      p.kernel);
 }
 
 }  // namespace
 
 void add_snapshot(ProfileMoments& p, const Snapshot& s, ProfileScratch& scratch) {
-  add(p, SnapshotGrains{s}, [&](const auto& f) { f(s.contacts); }, scratch);
+  add(
+      p, SnapshotGrains{s}, [&](const auto& f) { f(s.contacts); }, scratch);
 }
 
 void add_state(ProfileMoments& p, const dem::DemState& state, const dem::ContactLaws& laws, ProfileScratch& scratch) {
   const StateGrains grains{state, state.step == 0 ? 0 : 0.5 * state.dt};
-  add(p, grains, [&](const auto& f) { dem::for_contact_batches(state, laws, std::ref(f)); }, scratch);
+  add(
+      p, grains, [&](const auto& f) { dem::for_contact_batches(state, laws, std::ref(f)); }, scratch);
 }
 
 }  // namespace bagnold::cg

@@ -13,9 +13,9 @@ namespace bagnold::cg {
 // Averages at one place. Ratios are formed from averages, so that the balances stay exact in the mean.
 struct Local {
   const Row& mean;
-  const Gradient& gradient;   // of rho and p
-  double kernel_width;        // w: the shear across it adds rho w^2 (dV_a/dr)(dV_b/dr) to the kinetic stress
-  double least_density;       // below it there is no material: velocities and other ratios are NaN
+  const Gradient& gradient;  // of rho and p
+  double kernel_width;       // w: the shear across it adds rho w^2 (dV_a/dr)(dV_b/dr) to the kinetic stress
+  double least_density;      // below it there is no material: velocities and other ratios are NaN
 };
 
 struct FieldDefinition {
@@ -24,7 +24,7 @@ struct FieldDefinition {
 };
 
 const std::vector<FieldDefinition>& all_fields();
-const FieldDefinition& field_named(std::string_view name);   // throws InputError for an unknown name
+const FieldDefinition& field_named(std::string_view name);  // throws InputError for an unknown name
 
 // Density below which a place counts as empty: a millionth of the densest.
 double least_density(const std::vector<Row>& rows);

@@ -51,7 +51,7 @@ double crossing(const std::vector<double>& z, const std::vector<double>& f, std:
 
 // Base and surface by eq. (42).
 bool find_height(const std::vector<double>& z, const std::vector<double>& s_zz, FlowNumbers& out) {
-  constexpr double kappa = 0.01;   // the paper's threshold
+  constexpr double kappa = 0.01;  // the paper's threshold
   const double peak = *std::max_element(s_zz.begin(), s_zz.end());
   if (!(peak > 0)) return false;
   std::size_t low = 1, high = s_zz.size() - 1;
@@ -90,7 +90,7 @@ double layer_order(const MeanProfile& p, const std::vector<double>& rho, double 
 
 void add_bulk(const MeanProfile& p, const Column& c, double d, FlowNumbers& out) {
   const double lo = *out.base + 2 * d, hi = *out.surface - 4 * d;
-  if (hi - lo < 2 * d) return;   // too thin to have a bulk
+  if (hi - lo < 2 * d) return;  // too thin to have a bulk
   out.phi_bulk = integrate_nodes(p.z, c.phi, lo, hi) / (hi - lo);
   // A wide kernel has smoothed the layers away: what undoing it would show is noise.
   if (hi - lo >= 4 * d && p.kernel_width <= 0.4 * d) out.layering = layer_order(p, c.rho, lo, hi, d);
@@ -104,7 +104,8 @@ void add_balances(const MeanProfile& p, const Column& c, const FlowSetting& sett
     weight += 0.5 * (c.rho[n] + c.rho[n + 1]) * (p.z[n + 1] - p.z[n]) * g_z;
     if (p.z[n] < b || p.z[n] > s) continue;
     lithostatic = std::max(lithostatic, std::abs(c.s_zz[n] - weight) / peak);
-    if (p.z[n] >= b + d && p.z[n] <= s - 2 * d) angle = std::max(angle, std::abs(std::atan2(-c.s_xz[n], c.s_zz[n]) - theta));
+    if (p.z[n] >= b + d && p.z[n] <= s - 2 * d)
+      angle = std::max(angle, std::abs(std::atan2(-c.s_xz[n], c.s_zz[n]) - theta));
   }
   out.lithostatic_error = lithostatic;
   if (s - b > 3 * d) out.friction_angle_error_deg = angle * 180 / std::numbers::pi;
@@ -158,7 +159,8 @@ std::vector<Vec3> momentum_rate(const MeanProfile& p, const Vec3& gravity) {
   std::vector<Vec3> rate(p.z.size());
   for (std::size_t n = 0; n < p.z.size(); ++n)
     for (std::size_t a = 0; a < 3; ++a)
-      rate[n][static_cast<int>(a)] = p.slope[n][kContact + 3 * a + 2] + p.slope[n][kBase + 3 * a + 2] - p.slope[n][kFlux + symmetric(a, 2)] +
+      rate[n][static_cast<int>(a)] = p.slope[n][kContact + 3 * a + 2] + p.slope[n][kBase + 3 * a + 2] -
+                                     p.slope[n][kFlux + symmetric(a, 2)] +
                                      p.value[n][kMass] * gravity[static_cast<int>(a)];
   return rate;
 }
@@ -211,7 +213,8 @@ std::vector<SteadinessPoint> steadiness(const BlockedProfile& profile, const Flo
       const FlowNumbers f = analyse(p, setting);
       if (!f.residual) continue;
       sum += *f.residual;
-      if (p.samples > 1) duration += (p.end - p.begin) * static_cast<double>(p.samples) / static_cast<double>(p.samples - 1);
+      if (p.samples > 1)
+        duration += (p.end - p.begin) * static_cast<double>(p.samples) / static_cast<double>(p.samples - 1);
       ++windows;
     }
     if (windows > 0) points.push_back({duration / static_cast<double>(windows), sum / static_cast<double>(windows)});

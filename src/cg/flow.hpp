@@ -13,8 +13,8 @@ namespace bagnold::cg {
 
 // What the analysis has to know of the flow.
 struct FlowSetting {
-  Vec3 gravity{0, 0, -1};     // z normal to the base
-  double diameter = 1;        // of the flowing grains
+  Vec3 gravity{0, 0, -1};  // z normal to the base
+  double diameter = 1;     // of the flowing grains
 };
 
 // A number that does not exist for a profile (no material, a flow too thin for a bulk, no velocity) is nothing.
@@ -37,12 +37,18 @@ struct FlowNumbers {
         field("phi_mean", "1", "solid fraction averaged over [b, s]", &FlowNumbers::phi_mean),
         field("K", "1", "ratio of the depth averages of sigma_xx and sigma_zz", &FlowNumbers::K),
         field("alpha", "1", "depth average of u_x^2 over u_bar^2", &FlowNumbers::alpha),
-        field("layering", "1", "order of layers in the bulk, 0 (none) to 1: largest |sum m exp(ikz)|/sum m over wavelengths 0.75 d to 1.1 d",
+        field("layering", "1",
+              "order of layers in the bulk, 0 (none) to 1: largest |sum m exp(ikz)|/sum m over wavelengths 0.75 d to "
+              "1.1 d",
               &FlowNumbers::layering),
-        field("residual", "1", "depth-averaged norm of d(rho u)/dt from the balance (44), over rho g (figure 5)", &FlowNumbers::residual),
-        field("lithostatic_error", "1", "largest |sigma_zz - weight above| in [b, s] over its maximum (eq. 41)", &FlowNumbers::lithostatic_error),
-        field("friction_angle_error_deg", "deg", "largest |atan mu(z) - theta| in [b + d, s - 2d]", &FlowNumbers::friction_angle_error_deg),
-        field("contacts_per_grain", "1", "contacts per flowing grain, those with the base included, each counted once", &FlowNumbers::contacts_per_grain)};
+        field("residual", "1", "depth-averaged norm of d(rho u)/dt from the balance (44), over rho g (figure 5)",
+              &FlowNumbers::residual),
+        field("lithostatic_error", "1", "largest |sigma_zz - weight above| in [b, s] over its maximum (eq. 41)",
+              &FlowNumbers::lithostatic_error),
+        field("friction_angle_error_deg", "deg", "largest |atan mu(z) - theta| in [b + d, s - 2d]",
+              &FlowNumbers::friction_angle_error_deg),
+        field("contacts_per_grain", "1", "contacts per flowing grain, those with the base included, each counted once",
+              &FlowNumbers::contacts_per_grain)};
   }
 };
 

@@ -11,13 +11,14 @@ Snapshot snapshot_of(const dem::DemState& state, const dem::ContactLaws& laws, D
   const auto n = g.x.size(), flowing = static_cast<std::size_t>(g.flowing);
   scratch.v.assign(n, Vec3{});
   scratch.omega.assign(n, Vec3{});
-  const double half = state.step == 0 ? 0 : 0.5 * state.dt;   // velocities are half a step behind once it moves
+  const double half = state.step == 0 ? 0 : 0.5 * state.dt;  // velocities are half a step behind once it moves
   for (std::size_t i = 0; i < flowing; ++i) {
     scratch.v[i] = g.v[i] + half * (g.force[i] / g.mass[i] + state.gravity);
     scratch.omega[i] = g.omega[i] + (half / g.inertia[i]) * g.torque[i];
   }
   dem::list_contacts(state, laws, scratch.contacts);
-  return {state.time(), state.box, g.x, scratch.v, scratch.omega, g.diameter, g.mass, g.inertia, g.flowing, scratch.contacts};
+  return {state.time(), state.box, g.x,       scratch.v, scratch.omega,
+          g.diameter,   g.mass,    g.inertia, g.flowing, scratch.contacts};
 }
 
 namespace {
@@ -35,7 +36,9 @@ std::int64_t ProfileObserver::next_step(std::int64_t step) const {
 }
 
 void ProfileObserver::observe(const dem::DemState& state, const dem::ContactLaws& laws) {
-  if (state.step < options_.first_step || state.step > options_.last_step || (state.step - options_.first_step) % options_.every != 0) return;
+  if (state.step < options_.first_step || state.step > options_.last_step ||
+      (state.step - options_.first_step) % options_.every != 0)
+    return;
   profile_.add(state, laws);
 }
 

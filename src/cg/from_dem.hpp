@@ -11,7 +11,7 @@ namespace bagnold::cg {
 
 // Memory that a snapshot of a running engine refers to, kept between calls.
 struct DemScratch {
-  std::vector<Vec3> v, omega;             // at the time of the positions
+  std::vector<Vec3> v, omega;  // at the time of the positions
   std::vector<dem::Contact> contacts;
 };
 
@@ -21,8 +21,8 @@ Snapshot snapshot_of(const dem::DemState& state, const dem::ContactLaws& laws, D
 // What a run averages and when (keys of the section [cg] of a case).
 struct StreamingOptions {
   laws::CgKernels::Any kernel;
-  double spacing = 0;                     // of the nodes; 0: a quarter of the kernel width
-  std::int64_t first_step = 0, last_step = 0, every = 1;   // samples at first_step, first_step + every, ... <= last_step
+  double spacing = 0;                                     // of the nodes; 0: a quarter of the kernel width
+  std::int64_t first_step = 0, last_step = 0, every = 1;  // samples at first_step, first_step + every, ... <= last_step
   std::int64_t samples_expected() const { return last_step >= first_step ? (last_step - first_step) / every + 1 : 0; }
 };
 

@@ -25,7 +25,7 @@ struct Target {
   std::vector<Row>& sums;
   std::int64_t k_begin, k_end;
   int dimension;
-  double support, weight;   // weight = 1/(extent of the averaged directions)
+  double support, weight;  // weight = 1/(extent of the averaged directions)
 };
 
 // Nodes in [lo, hi], clipped to the slab.
@@ -40,7 +40,7 @@ Range3 nodes_within(const Target<Kernel>& t, const Vec3& lo, const Vec3& hi) {
       r.end[d] = 1;
       continue;
     }
-    const auto index = [&](double x) {   // clamped before the conversion: a ray reaches to infinity
+    const auto index = [&](double x) {  // clamped before the conversion: a ray reaches to infinity
       return std::clamp((x - t.grid.origin[a]) / t.grid.spacing[a], static_cast<double>(first) - 1,
                         static_cast<double>(last) + 1);
     };
@@ -59,7 +59,8 @@ void for_each_image(const Target<Kernel>& t, Vec3 lo, Vec3 hi, F&& f) {
     lo[a] -= t.support;
     hi[a] += t.support;
     if (!t.grid.resolved[d] || !t.box.periodic[d]) continue;
-    const double L = t.box.length[a], end = t.grid.origin[a] + static_cast<double>(t.grid.count[d] - 1) * t.grid.spacing[a];
+    const double L = t.box.length[a],
+                 end = t.grid.origin[a] + static_cast<double>(t.grid.count[d] - 1) * t.grid.spacing[a];
     first[d] = static_cast<std::int64_t>(std::ceil((t.grid.origin[a] - hi[a]) / L));
     last[d] = static_cast<std::int64_t>(std::floor((end - lo[a]) / L));
   }
@@ -102,21 +103,22 @@ void carry(const Target<Kernel>& t, const Vec3& x, const std::array<double, kCar
 template <class Kernel>
 void spread(const Target<Kernel>& t, Channel channel, const Vec3& start, const Vec3& r, const Vec3& f) {
   const Tensor3 fr = outer(f, r);
-  Vec3 along = -r;   // projected on the resolved directions
+  Vec3 along = -r;  // projected on the resolved directions
   for (int a = 0; a < 3; ++a)
     if (!t.grid.resolved[static_cast<std::size_t>(a)]) along[a] = 0;
   const double length = norm(along);
   const Vec3 end = start - r;
   const Vec3 lo{std::min(start.x, end.x), std::min(start.y, end.y), std::min(start.z, end.z)};
   const Vec3 hi{std::max(start.x, end.x), std::max(start.y, end.y), std::max(start.z, end.z)};
-  const bool is_short = length < 1e-3 * t.support;   // there the difference of integrals would cancel
+  const bool is_short = length < 1e-3 * t.support;  // there the difference of integrals would cancel
   for_each_image(t, lo, hi, [&](const Range3& range, const Vec3& shift) {
     for_each_node(t, range, start + shift, [&](Row& row, const Vec3& d) {
       double mean = 0;
-      if (is_short) {   // three-point Gauss rule
+      if (is_short) {  // three-point Gauss rule
         mean = (8 * t.kernel.density(norm2(d - 0.5 * along), t.dimension) +
                 5 * t.kernel.density(norm2(d - (0.5 - std::sqrt(0.15)) * along), t.dimension) +
-                5 * t.kernel.density(norm2(d - (0.5 + std::sqrt(0.15)) * along), t.dimension)) / 18;
+                5 * t.kernel.density(norm2(d - (0.5 + std::sqrt(0.15)) * along), t.dimension)) /
+               18;
       } else {
         const double s = dot(d, along) / length;
         mean = t.kernel.line(std::max(norm2(d) - s * s, 0.0), -s, length - s, t.dimension) / length;
@@ -193,9 +195,11 @@ void add_snapshot(std::vector<Row>& sums, const Grid& grid, const laws::CgKernel
         using Kernel = std::decay_t<decltype(k)>;
         const int dimension = grid.dimension();
         // Slabs own their nodes, and every slab adds grains and contacts in the same order.
-        parallel_blocks(grid.count[2], std::max<std::int64_t>(1, grid.count[2] / 32), [&](std::int64_t b, std::int64_t e) {
-          add_slab(Target<Kernel>{grid, k, s.box, sums, b, e, dimension, k.support(dimension), 1 / averaged}, s, nn);
-        });
+        parallel_blocks(
+            grid.count[2], std::max<std::int64_t>(1, grid.count[2] / 32), [&](std::int64_t b, std::int64_t e) {
+              add_slab(Target<Kernel>{grid, k, s.box, sums, b, e, dimension, k.support(dimension), 1 / averaged}, s,
+                       nn);
+            });
       },
       kernel);
 }
@@ -207,7 +211,8 @@ std::vector<Gradient> gradients(const std::vector<Row>& rows, const Grid& g, con
     const std::int64_t count = g.count[a];
     const double h = g.spacing[static_cast<int>(a)];
     if (!g.resolved[a] || count < 3) continue;
-    const bool wraps = box.periodic[a] && std::abs(static_cast<double>(count) * h - box.length[static_cast<int>(a)]) < 1e-9 * h;
+    const bool wraps =
+        box.periodic[a] && std::abs(static_cast<double>(count) * h - box.length[static_cast<int>(a)]) < 1e-9 * h;
     for (std::size_t n = 0; n < rows.size(); ++n) {
       const std::int64_t i = static_cast<std::int64_t>(n) / stride[a] % count;
       const auto at = [&](std::int64_t offset, std::size_t c) {
@@ -216,10 +221,14 @@ std::vector<Gradient> gradients(const std::vector<Row>& rows, const Grid& g, con
       };
       for (std::size_t c = 0; c < 4; ++c) {
         double& d = out[n].d[a][c];
-        if (wraps || (i >= 2 && i + 2 < count)) d = (8 * (at(1, c) - at(-1, c)) - (at(2, c) - at(-2, c))) / (12 * h);
-        else if (i == 0) d = (-3 * at(0, c) + 4 * at(1, c) - at(2, c)) / (2 * h);
-        else if (i == count - 1) d = (3 * at(0, c) - 4 * at(-1, c) + at(-2, c)) / (2 * h);
-        else d = (at(1, c) - at(-1, c)) / (2 * h);
+        if (wraps || (i >= 2 && i + 2 < count))
+          d = (8 * (at(1, c) - at(-1, c)) - (at(2, c) - at(-2, c))) / (12 * h);
+        else if (i == 0)
+          d = (-3 * at(0, c) + 4 * at(1, c) - at(2, c)) / (2 * h);
+        else if (i == count - 1)
+          d = (3 * at(0, c) - 4 * at(-1, c) + at(-2, c)) / (2 * h);
+        else
+          d = (at(1, c) - at(-1, c)) / (2 * h);
       }
     }
   }

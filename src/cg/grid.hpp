@@ -32,12 +32,13 @@ Grid make_grid(const Box& box, std::array<bool, 3> resolved, double z_min, doubl
 
 // Adds the sums of one instant to `sums` (one row a node). Images in resolved periodic directions are included.
 // The result does not depend on the number of threads. Throws UnphysicalError if the grid does not resolve z.
-void add_snapshot(std::vector<Row>& sums, const Grid& grid, const laws::CgKernels::Any& kernel, const Snapshot& snapshot);
+void add_snapshot(std::vector<Row>& sums, const Grid& grid, const laws::CgKernels::Any& kernel,
+                  const Snapshot& snapshot);
 
 // Gradients of mass and momentum density by fourth-order differences (second order in the two rows at an open edge),
 // across the seam where the grid covers a whole period.
 struct Gradient {
-  std::array<std::array<double, 4>, 3> d{};   // d[direction] = {rho, p_x, p_y, p_z}
+  std::array<std::array<double, 4>, 3> d{};  // d[direction] = {rho, p_x, p_y, p_z}
 };
 std::vector<Gradient> gradients(const std::vector<Row>& rows, const Grid& grid, const Box& box);
 

@@ -36,7 +36,7 @@ struct BinMoments {
 // Where a profile is evaluated: nodes n * spacing + origin, which are edges of bins.
 struct Lattice {
   double origin = 0, spacing = 0;
-  std::int64_t bins_per_node = 2;   // even, so that the edges of averaging intervals are edges of bins as well
+  std::int64_t bins_per_node = 2;  // even, so that the edges of averaging intervals are edges of bins as well
   double bin() const { return spacing / static_cast<double>(bins_per_node); }
   double node(std::int64_t n) const { return origin + static_cast<double>(n) * spacing; }
 };
@@ -52,18 +52,19 @@ inline double* bin_data(BinMoments& m, std::int64_t b) { return m.data.data() + 
 struct ProfileMoments {
   laws::CgKernels::Any kernel;
   Lattice lattice;
-  double area = 1;                  // Lx Ly
+  double area = 1;  // Lx Ly
   std::int64_t samples = 0;
-  double contacts = 0;              // number of contacts, summed over the samples
-  Vec3 base_force{};                // force of the flow on the base, summed over the samples
+  double contacts = 0;  // number of contacts, summed over the samples
+  Vec3 base_force{};    // force of the flow on the base, summed over the samples
   BinMoments flow, base;
 };
 
 // Scratch of add_snapshot and add_state, kept between calls so that nothing is allocated.
 struct ProfileScratch {
-  std::vector<double> of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric, 1 unused; 0 between calls
-  std::vector<std::int32_t> bin, order, begin;   // grains sorted by bin
-  std::vector<double> delta;                     // of a grain, from the centre of its bin
+  std::vector<double>
+      of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric, 1 unused; 0 between calls
+  std::vector<std::int32_t> bin, order, begin;  // grains sorted by bin
+  std::vector<double> delta;                    // of a grain, from the centre of its bin
 };
 
 ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& lattice, const Box& box);
@@ -71,9 +72,10 @@ ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& l
 // Throws NumericalError if a grain is so far away that it cannot be part of a profile (or its position is not finite).
 void add_snapshot(ProfileMoments& moments, const Snapshot& snapshot, ProfileScratch& scratch);
 // The same from a running engine, without the copies a Snapshot needs.
-void add_state(ProfileMoments& moments, const dem::DemState& state, const dem::ContactLaws& laws, ProfileScratch& scratch);
-void clear(ProfileMoments& moments);   // keeps the bins
-void add_moments(ProfileMoments& to, const ProfileMoments& from);   // of the same kernel and lattice
+void add_state(ProfileMoments& moments, const dem::DemState& state, const dem::ContactLaws& laws,
+               ProfileScratch& scratch);
+void clear(ProfileMoments& moments);                               // keeps the bins
+void add_moments(ProfileMoments& to, const ProfileMoments& from);  // of the same kernel and lattice
 
 // Sums at nodes [first, first + count) and their derivatives along z, per unit area; not divided by samples.
 // `averaged`: means over intervals of one spacing about the nodes (mass and force are then exact per interval) instead of

@@ -37,7 +37,7 @@ Pieces averages(std::span<const double> t, const std::vector<double>& f, std::si
 }
 
 struct Trend {
-  double slope, slope_err, deviation;   // deviation: standard deviation of what the line leaves
+  double slope, slope_err, deviation;  // deviation: standard deviation of what the line leaves
 };
 
 Trend fit_line(const Pieces& p) {
@@ -55,7 +55,8 @@ Trend fit_line(const Pieces& p) {
 bool has_arrested(const EnergySeries& e, double mean_elastic, const RegimeCriteria& c) {
   for (std::size_t n = 0; n < e.t.size(); ++n)
     if (e.t[n] > c.arrested_after && e.elastic[n] > 0 &&
-        e.kinetic[n] < c.arrested_ratio * std::min(mean_elastic, e.elastic[n])) return true;
+        e.kinetic[n] < c.arrested_ratio * std::min(mean_elastic, e.elastic[n]))
+      return true;
   return false;
 }
 
@@ -95,9 +96,12 @@ RegimeReport classify(const EnergySeries& e, std::optional<double> layering, con
   out.growth = slow.slope * window / *out.energy_ratio;
   out.swing = fast.deviation / *out.energy_ratio;
   const bool trend = std::abs(*out.growth) > c.growth && std::abs(slow.slope) > c.growth_errors * slow.slope_err;
-  if (*out.swing > c.swing && !trend) out.regime = Regime::oscillating;
-  else if (trend) out.regime = slow.slope > 0 ? std::optional(Regime::accelerating) : std::nullopt;
-  else out.regime = layering && *layering > c.layer_order ? Regime::layered : Regime::steady;
+  if (*out.swing > c.swing && !trend)
+    out.regime = Regime::oscillating;
+  else if (trend)
+    out.regime = slow.slope > 0 ? std::optional(Regime::accelerating) : std::nullopt;
+  else
+    out.regime = layering && *layering > c.layer_order ? Regime::layered : Regime::steady;
   return out;
 }
 

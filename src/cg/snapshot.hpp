@@ -13,11 +13,11 @@ namespace bagnold::cg {
 // Grains [0, flowing) carry the fields; the others are base. All velocities at the same time as the positions.
 struct Snapshot {
   double time = 0;
-  Box box;                                  // averaged directions are divided by box.length, periodic or not
+  Box box;  // averaged directions are divided by box.length, periodic or not
   std::span<const Vec3> x, v, omega;
   std::span<const double> diameter, mass, inertia;
   std::int64_t flowing = 0;
-  std::span<const dem::Contact> contacts;   // every touching pair with a flowing grain, once; i flows
+  std::span<const dem::Contact> contacts;  // every touching pair with a flowing grain, once; i flows
 };
 
 // A snapshot that owns its arrays: what the readers of files return.
@@ -33,12 +33,16 @@ struct StoredSnapshot {
 
 // True if the partner of the contact does not flow (a base grain or a wall): its force leaves the flowing system.
 template <class Contact>
-bool touches_base(std::int64_t flowing, const Contact& c) { return c.j < 0 || c.j >= flowing; }
+bool touches_base(std::int64_t flowing, const Contact& c) {
+  return c.j < 0 || c.j >= flowing;
+}
 inline bool touches_base(const Snapshot& s, const dem::Contact& c) { return touches_base(s.flowing, c); }
 
 // From the contact point to the centre of grain i: what a base contact spreads along, see cg/channels.hpp.
 template <class Contact>
-Vec3 arm_from_contact(double diameter, const Contact& c) { return (0.5 * (diameter - c.overlap)) * c.normal; }
+Vec3 arm_from_contact(double diameter, const Contact& c) {
+  return (0.5 * (diameter - c.overlap)) * c.normal;
+}
 inline Vec3 arm_from_contact(const Snapshot& s, const dem::Contact& c) {
   return arm_from_contact(s.diameter[static_cast<std::size_t>(c.i)], c);
 }

@@ -36,16 +36,23 @@ ClosureSet make(const Row& row, double d, double grain_density) {
   ClosureSet set;
   set.name = fmt::format("weinhart2012/{}", row.lambda);
   set.source = "Weinhart, Thornton, Luding & Bokhove 2012, tables 1 and 2, eqs 46, 48, 50, 52-55";
-  set.friction = laws::PouliquenForterre{.delta1_deg = rough.delta1_deg, .delta2_deg = rough.delta2_deg, .A = rough.A,
-                                         .d = d, .beta = row.beta, .gamma = row.gamma};
-  set.static_branch = {.froude_star = row.beta - row.gamma, .delta1_deg = row.delta1_deg, .delta2_deg = row.delta2_deg,
-                       .delta3_deg = row.delta1_deg + starting_offset_deg, .length = row.A * d};
+  set.friction = laws::PouliquenForterre{.delta1_deg = rough.delta1_deg,
+                                         .delta2_deg = rough.delta2_deg,
+                                         .A = rough.A,
+                                         .d = d,
+                                         .beta = row.beta,
+                                         .gamma = row.gamma};
+  set.static_branch = {.froude_star = row.beta - row.gamma,
+                       .delta1_deg = row.delta1_deg,
+                       .delta2_deg = row.delta2_deg,
+                       .delta3_deg = row.delta1_deg + starting_offset_deg,
+                       .length = row.A * d};
   set.density = laws::ExponentialAngleDensity{};
   set.grain_density = grain_density;
   set.stress_ratio = laws::LinearAngleStressRatio{};
   if (row.rough)
-    set.shape_factor = laws::StrainModelShapeFactor{.base_layer = row.shape, .d = d, .delta1_deg = rough.delta1_deg,
-                                                    .delta2_deg = rough.delta2_deg, .A = rough.A};
+    set.shape_factor = laws::StrainModelShapeFactor{
+        .base_layer = row.shape, .d = d, .delta1_deg = rough.delta1_deg, .delta2_deg = rough.delta2_deg, .A = rough.A};
   else
     set.shape_factor = laws::ConstantShapeFactor{.alpha = row.shape};
   set.validity = {row.theta_lo_deg, row.theta_hi_deg};
@@ -58,7 +65,8 @@ std::string describe_law(std::string_view role, const auto& any) {
       [&](const auto& law) {
         using Law = std::decay_t<decltype(law)>;
         std::string text = fmt::format("{}: {} ({})\n", role, Law::name, Law::summary);
-        for_each_field<Law>([&](const auto& f) { text += fmt::format("    {} = {} {}\n", f.name, law.*(f.member), f.unit); });
+        for_each_field<Law>(
+            [&](const auto& f) { text += fmt::format("    {} = {} {}\n", f.name, law.*(f.member), f.unit); });
         return text;
       },
       any);
@@ -90,7 +98,8 @@ std::string describe(const ClosureSet& set) {
   text += describe_law("static branch", std::variant<laws::StaticBranch>(set.static_branch));
   text += describe_law("density", set.density) + describe_law("stress ratio", set.stress_ratio);
   text += describe_law("shape factor", set.shape_factor);
-  text += fmt::format("measured for {} < atan(mu) < {} degrees\n", set.validity.theta_lo_deg, set.validity.theta_hi_deg);
+  text +=
+      fmt::format("measured for {} < atan(mu) < {} degrees\n", set.validity.theta_lo_deg, set.validity.theta_hi_deg);
   if (set.flow_rule_error) text += fmt::format("err(F) = {}\n", *set.flow_rule_error);
   return text;
 }

@@ -18,14 +18,14 @@ struct Validity {
 struct ClosureSet {
   std::string name = "custom", source;
   laws::FrictionLaws::Any friction = laws::Coulomb{};
-  laws::StaticBranch static_branch;                        // off unless froude_star > 0
+  laws::StaticBranch static_branch;  // off unless froude_star > 0
   laws::DensityLaws::Any density = laws::ConstantDensity{};
-  double grain_density = 1;                                // rho_p, mass/length^3
+  double grain_density = 1;  // rho_p, mass/length^3
   laws::StressRatioLaws::Any stress_ratio = laws::ConstantStressRatio{};
   laws::ShapeFactorLaws::Any shape_factor = laws::ConstantShapeFactor{};
   Validity validity;
-  std::optional<double> flow_rule_error;                   // err(F) of the fit, eq. 49
-  bool is_constant() const;                                // density, stress ratio and shape factor are numbers
+  std::optional<double> flow_rule_error;  // err(F) of the fit, eq. 49
+  bool is_constant() const;               // density, stress ratio and shape factor are numbers
 };
 
 // The sets that ship with the program: "weinhart2012/0", "/1/2", "/2/3", "/5/6", "/1", "/2" for the ratio lambda of base to

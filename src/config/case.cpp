@@ -25,7 +25,6 @@ Resolved::Entry& Resolved::entry(std::string_view key) {
 
 namespace {
 
-
 const Node::Table& table_of(const Node* node) {
   static const Node::Table none;
   if (const auto* table = std::get_if<Node::Table>(&node->value)) return *table;
@@ -76,12 +75,18 @@ std::optional<T> as(const Node& node) {
 
 template <class T>
 std::string expected() {
-  if constexpr (std::is_same_v<T, bool>) return "true or false";
-  else if constexpr (std::is_same_v<T, std::int64_t>) return "an integer";
-  else if constexpr (std::is_same_v<T, double>) return "a number";
-  else if constexpr (std::is_same_v<T, std::string>) return "a string";
-  else if constexpr (std::is_same_v<T, std::vector<double>>) return "an array of numbers";
-  else return "an array of strings";
+  if constexpr (std::is_same_v<T, bool>)
+    return "true or false";
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return "an integer";
+  else if constexpr (std::is_same_v<T, double>)
+    return "a number";
+  else if constexpr (std::is_same_v<T, std::string>)
+    return "a string";
+  else if constexpr (std::is_same_v<T, std::vector<double>>)
+    return "an array of numbers";
+  else
+    return "an array of strings";
 }
 
 std::string in_unit(std::string_view unit) { return unit.empty() ? "" : fmt::format(" [{}]", unit); }
@@ -90,7 +95,8 @@ template <class T>
 void check_range(const T& value, const Range& range, std::string_view unit, const Node& node) {
   const auto check = [&](double v) {
     if (!range.contains(v) || std::isnan(v))
-      fail_at(node.place, fmt::format("{} = {:g} is out of range, expected {}{}", node.path, v, to_string(range), in_unit(unit)));
+      fail_at(node.place,
+              fmt::format("{} = {:g} is out of range, expected {}{}", node.path, v, to_string(range), in_unit(unit)));
   };
   if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::int64_t>) check(static_cast<double>(value));
   if constexpr (std::is_same_v<T, std::vector<double>>)
@@ -102,7 +108,8 @@ void check_range(const T& value, const Range& range, std::string_view unit, cons
 void Section::fail(std::string_view key, const std::string& what) const {
   const auto& table = table_of(node_);
   const auto at = table.find(std::string(key));
-  const std::string full = node_->path.empty() ? std::string(key) : node_->path + (key.empty() ? "" : ".") + std::string(key);
+  const std::string full =
+      node_->path.empty() ? std::string(key) : node_->path + (key.empty() ? "" : ".") + std::string(key);
   fail_at(at != table.end() ? at->second.place : node_->place, full.empty() ? what : full + ": " + what);
 }
 
@@ -140,7 +147,8 @@ std::vector<Section> Section::list(std::string_view key) const {
   const Node* node = find(node_, key);
   if (node == nullptr) return {};
   const auto* items = std::get_if<Node::List>(&node->value);
-  if (items == nullptr) fail_at(node->place, fmt::format("{}: expected an array of tables, found {}", node->path, type_name(*node)));
+  if (items == nullptr)
+    fail_at(node->place, fmt::format("{}: expected an array of tables, found {}", node->path, type_name(*node)));
   auto& content = resolved_->entry(key).content;
   if (!std::holds_alternative<std::vector<std::unique_ptr<Resolved>>>(content)) {
     content = std::vector<std::unique_ptr<Resolved>>{};
@@ -171,7 +179,9 @@ T Section::get(std::string_view key, std::optional<T> fallback, Range range, std
     return *fallback;
   }
   const auto value = as<T>(*node);
-  if (!value) fail_at(node->place, fmt::format("{}: expected {}{}, found {}", node->path, expected<T>(), in_unit(unit), type_name(*node)));
+  if (!value)
+    fail_at(node->place,
+            fmt::format("{}: expected {}{}, found {}", node->path, expected<T>(), in_unit(unit), type_name(*node)));
   check_range(*value, range, unit, *node);
   resolved_->entry(key).content = Value(*value);
   return *value;
@@ -181,7 +191,8 @@ template bool Section::get(std::string_view, std::optional<bool>, Range, std::st
 template std::int64_t Section::get(std::string_view, std::optional<std::int64_t>, Range, std::string_view) const;
 template double Section::get(std::string_view, std::optional<double>, Range, std::string_view) const;
 template std::string Section::get(std::string_view, std::optional<std::string>, Range, std::string_view) const;
-template std::vector<double> Section::get(std::string_view, std::optional<std::vector<double>>, Range, std::string_view) const;
+template std::vector<double> Section::get(std::string_view, std::optional<std::vector<double>>, Range,
+                                          std::string_view) const;
 template std::vector<std::string> Section::get(std::string_view, std::optional<std::vector<std::string>>, Range,
                                                std::string_view) const;
 
@@ -203,7 +214,8 @@ std::optional<double> Section::get_auto(std::string_view key, Range range, std::
     return {};
   }
   if (!as<double>(*node))
-    fail_at(node->place, fmt::format("{}: expected a number{} or \"auto\", found {}", node->path, in_unit(unit), type_name(*node)));
+    fail_at(node->place,
+            fmt::format("{}: expected a number{} or \"auto\", found {}", node->path, in_unit(unit), type_name(*node)));
   return get<double>(key, std::nullopt, range, unit);
 }
 
@@ -223,7 +235,8 @@ Case Case::from_text(const std::string& text, const std::string& name, const std
 
 Case Case::from_file(const std::string& path, const std::vector<std::string>& overrides) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(path + ": error: is a directory, expected a case file (.toml)");
+  if (std::filesystem::is_directory(path, ignored))
+    throw InputError(path + ": error: is a directory, expected a case file (.toml)");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": error: cannot be opened, expected a case file (.toml)");
   std::ostringstream text;
@@ -258,8 +271,10 @@ void reject_unread_in(const Node& node) {
       const std::vector<std::string> known(node.asked.begin(), node.asked.end());
       const std::string close = nearest(key, known);
       std::string what = fmt::format("{}: unknown key", child.path);
-      if (!close.empty()) what += fmt::format(", is '{}' meant?", close);
-      else if (!known.empty()) what += ", expected one of " + join(known);
+      if (!close.empty())
+        what += fmt::format(", is '{}' meant?", close);
+      else if (!known.empty())
+        what += ", expected one of " + join(known);
       fail_at(child.key_place, what);
     }
     reject_unread_in(child);

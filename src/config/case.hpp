@@ -28,19 +28,20 @@ class Section {
  public:
   // Throws InputError `file:line:col: error: <what>` at the place of `key` (or of the table when it is absent).
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
-  bool has(std::string_view key) const;      // does not count as asking
-  void ask(std::string_view key) const;      // makes `key` known without reading it
-  std::string path() const;                  // "scenario", "contact.grain-base"
+  bool has(std::string_view key) const;  // does not count as asking
+  void ask(std::string_view key) const;  // makes `key` known without reading it
+  std::string path() const;              // "scenario", "contact.grain-base"
 
-  Section child(std::string_view key) const;                       // empty section when absent
-  std::vector<Section> list(std::string_view key) const;           // array of tables; empty when absent
-  std::vector<std::string> keys() const;                           // as written in the file
+  Section child(std::string_view key) const;              // empty section when absent
+  std::vector<Section> list(std::string_view key) const;  // array of tables; empty when absent
+  std::vector<std::string> keys() const;                  // as written in the file
 
   // One value. `fallback` nothing: the key is required. A type mismatch or a number outside `range` is an error.
   template <class T>
   T get(std::string_view key, std::optional<T> fallback, Range range = any_number(), std::string_view unit = "") const;
   // A choice by name among `known`.
-  std::string choose(std::string_view key, std::optional<std::string> fallback, const std::vector<std::string>& known) const;
+  std::string choose(std::string_view key, std::optional<std::string> fallback,
+                     const std::vector<std::string>& known) const;
   // A number, or "auto"/absent for nothing.
   std::optional<double> get_auto(std::string_view key, Range range = any_number(), std::string_view unit = "") const;
   // Replaces what the resolved case says of `key` (for example the number behind "auto").
@@ -61,14 +62,16 @@ class Section {
   const Node* node_;
   Resolved* resolved_;
   template <class M>
-  M read_member(std::string_view name, std::string_view unit, const Range& range, bool is_required, const M& fallback) const;
+  M read_member(std::string_view name, std::string_view unit, const Range& range, bool is_required,
+                const M& fallback) const;
 };
 
 class Case {
  public:
   // Reads `path` and applies `key.path=value` overrides. Throws InputError (syntax, with line and column), IoError.
   static Case from_file(const std::string& path, const std::vector<std::string>& overrides = {});
-  static Case from_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
+  static Case from_text(const std::string& text, const std::string& name,
+                        const std::vector<std::string>& overrides = {});
   Case(Case&&) noexcept;
   Case& operator=(Case&&) noexcept;
   Case(const Case&) = delete;
@@ -80,8 +83,8 @@ class Case {
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
   // Call when everything has been read: throws InputError for the first key nobody asked for.
   void reject_unread() const;
-  std::string resolved() const;              // TOML text of every key asked for, defaults included
-  const std::string& directory() const;      // folder of the file, for paths relative to it
+  std::string resolved() const;          // TOML text of every key asked for, defaults included
+  const std::string& directory() const;  // folder of the file, for paths relative to it
 
  private:
   Case();
@@ -98,7 +101,8 @@ M Section::read_member(std::string_view name, std::string_view unit, const Range
     return get_auto(name, range, unit);
   } else if constexpr (std::is_same_v<M, Vec3>) {
     const auto v = get<std::vector<double>>(
-        name, is_required ? std::nullopt : std::optional(std::vector<double>{fallback.x, fallback.y, fallback.z}), range, unit);
+        name, is_required ? std::nullopt : std::optional(std::vector<double>{fallback.x, fallback.y, fallback.z}),
+        range, unit);
     if (v.size() != 3) fail(name, "expected three numbers [x, y, z]");
     return Vec3{v[0], v[1], v[2]};
   } else if constexpr (std::is_integral_v<M> && !std::is_same_v<M, bool>) {
@@ -112,9 +116,8 @@ M Section::read_member(std::string_view name, std::string_view unit, const Range
 template <class T>
 T Section::read() const {
   T t{};
-  for_each_field<T>([&](const auto& f) {
-    t.*(f.member) = read_member(f.name, f.unit, f.range, f.required, t.*(f.member));
-  });
+  for_each_field<T>(
+      [&](const auto& f) { t.*(f.member) = read_member(f.name, f.unit, f.range, f.required, t.*(f.member)); });
   return t;
 }
 
@@ -122,8 +125,10 @@ template <class T>
 T Section::read(const T& inherited) const {
   T t = inherited;
   for_each_field<T>([&](const auto& f) {
-    if (has(f.name)) t.*(f.member) = read_member(f.name, f.unit, f.range, false, t.*(f.member));
-    else ask(f.name);
+    if (has(f.name))
+      t.*(f.member) = read_member(f.name, f.unit, f.range, false, t.*(f.member));
+    else
+      ask(f.name);
   });
   return t;
 }

@@ -11,12 +11,18 @@ namespace bagnold::config {
 
 template <class M>
 std::string default_text(const M& value) {
-  if constexpr (std::is_same_v<M, std::optional<double>>) return value ? fmt::format("{:g}", *value) : "auto";
-  else if constexpr (std::is_same_v<M, bool>) return value ? "true" : "false";
-  else if constexpr (std::is_same_v<M, Vec3>) return fmt::format("[{:g}, {:g}, {:g}]", value.x, value.y, value.z);
-  else if constexpr (std::is_arithmetic_v<M>) return fmt::format("{:g}", static_cast<double>(value));
-  else if constexpr (std::is_convertible_v<M, std::string>) return value.empty() ? "none" : std::string(value);
-  else return fmt::format("{} values", value.size());
+  if constexpr (std::is_same_v<M, std::optional<double>>)
+    return value ? fmt::format("{:g}", *value) : "auto";
+  else if constexpr (std::is_same_v<M, bool>)
+    return value ? "true" : "false";
+  else if constexpr (std::is_same_v<M, Vec3>)
+    return fmt::format("[{:g}, {:g}, {:g}]", value.x, value.y, value.z);
+  else if constexpr (std::is_arithmetic_v<M>)
+    return fmt::format("{:g}", static_cast<double>(value));
+  else if constexpr (std::is_convertible_v<M, std::string>)
+    return value.empty() ? "none" : std::string(value);
+  else
+    return fmt::format("{} values", value.size());
 }
 
 // One line per key: name, default, unit, range, meaning.
@@ -37,10 +43,8 @@ std::string describe_fields() {
 template <class T>
 std::string describe() {
   std::string out = fmt::format("{}: {}\n", T::name, T::summary);
-  if constexpr (requires { T::equation; })
-    out += fmt::format("    {}\n", T::equation);
-  if constexpr (requires { T::source; })
-    out += fmt::format("    source: {}\n", T::source);
+  if constexpr (requires { T::equation; }) out += fmt::format("    {}\n", T::equation);
+  if constexpr (requires { T::source; }) out += fmt::format("    source: {}\n", T::source);
   return out + describe_fields<T>();
 }
 

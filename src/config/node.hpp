@@ -12,7 +12,7 @@
 namespace bagnold::config {
 
 struct Place {
-  std::string file;        // or "--set key=value"
+  std::string file;  // or "--set key=value"
   unsigned line = 0, column = 0;
 };
 
@@ -23,10 +23,10 @@ struct Node {
   using Table = std::map<std::string, Node>;
   using List = std::vector<Node>;
   std::variant<bool, std::int64_t, double, std::string, List, Table> value = Table{};
-  Place place, key_place;               // of the value; of its key
-  std::string path;                     // "scenario.angle_deg"
-  mutable bool read = false;            // somebody asked for it
-  mutable std::set<std::string> asked;  // of a table: every key asked for, present or not
+  Place place, key_place;                                       // of the value; of its key
+  std::string path;                                             // "scenario.angle_deg"
+  mutable bool read = false;                                    // somebody asked for it
+  mutable std::set<std::string> asked;                          // of a table: every key asked for, present or not
   mutable std::map<std::string, std::unique_ptr<Node>> absent;  // child tables asked for that are not there
 };
 

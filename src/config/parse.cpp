@@ -1,9 +1,9 @@
 // TOML text -> Node tree. The only file that includes the TOML library.
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cctype>
-#include <toml++/toml.h>
 
 #include "config/node.hpp"
 
@@ -107,9 +107,12 @@ std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') out += "\\n";
-    else if (c == '\t') out += "\\t";
-    else out += c;
+    if (c == '\n')
+      out += "\\n";
+    else if (c == '\t')
+      out += "\\t";
+    else
+      out += c;
   }
   return out + '"';
 }
@@ -126,16 +129,22 @@ std::string value_text(const Value& value) {
   return std::visit(
       [](const auto& v) -> std::string {
         using V = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<V, bool>) return v ? "true" : "false";
-        else if constexpr (std::is_same_v<V, std::int64_t>) return fmt::format("{}", v);
-        else if constexpr (std::is_same_v<V, double>) return number_text(v);
-        else if constexpr (std::is_same_v<V, std::string>) return quoted(v);
+        if constexpr (std::is_same_v<V, bool>)
+          return v ? "true" : "false";
+        else if constexpr (std::is_same_v<V, std::int64_t>)
+          return fmt::format("{}", v);
+        else if constexpr (std::is_same_v<V, double>)
+          return number_text(v);
+        else if constexpr (std::is_same_v<V, std::string>)
+          return quoted(v);
         else {
           std::string out = "[";
           for (std::size_t i = 0; i < v.size(); ++i) {
             if (i > 0) out += ", ";
-            if constexpr (std::is_same_v<V, std::vector<double>>) out += number_text(v[i]);
-            else out += quoted(v[i]);
+            if constexpr (std::is_same_v<V, std::vector<double>>)
+              out += number_text(v[i]);
+            else
+              out += quoted(v[i]);
           }
           return out + "]";
         }

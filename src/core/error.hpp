@@ -12,7 +12,8 @@ struct InputError : std::runtime_error {
 
 // A value outside the range where the numbers mean something, found below the reader, which adds the location (exit 2).
 struct UnphysicalError : InputError {
-  UnphysicalError(std::string key_, std::string text_) : InputError(key_ + ": " + text_), key(std::move(key_)), text(std::move(text_)) {}
+  UnphysicalError(std::string key_, std::string text_)
+      : InputError(key_ + ": " + text_), key(std::move(key_)), text(std::move(text_)) {}
   std::string key;   // dotted key it is about, for example "time.step"
   std::string text;  // what is wrong with it
 };

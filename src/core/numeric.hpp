@@ -24,13 +24,21 @@ struct Vec3Of {
 };
 
 template <class N>
-constexpr Vec3Of<N> operator+(const Vec3Of<N>& a, const Vec3Of<N>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+constexpr Vec3Of<N> operator+(const Vec3Of<N>& a, const Vec3Of<N>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 template <class N>
-constexpr Vec3Of<N> operator-(const Vec3Of<N>& a, const Vec3Of<N>& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr Vec3Of<N> operator-(const Vec3Of<N>& a, const Vec3Of<N>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 template <class N>
-constexpr Vec3Of<N> operator*(const N& s, const Vec3Of<N>& a) { return {s * a.x, s * a.y, s * a.z}; }
+constexpr Vec3Of<N> operator*(const N& s, const Vec3Of<N>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 template <class N>
-constexpr N dot(const Vec3Of<N>& a, const Vec3Of<N>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr N dot(const Vec3Of<N>& a, const Vec3Of<N>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class N>
 constexpr Vec3Of<N> cross(const Vec3Of<N>& a, const Vec3Of<N>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

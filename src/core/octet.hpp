@@ -45,15 +45,21 @@ inline Octet sqrt(const Octet& a) {
 
 // The larger and the smaller of two numbers, for double and Octet alike.
 template <class T>
-inline T larger(const T& a, const T& b) { return a > b ? a : b; }
+inline T larger(const T& a, const T& b) {
+  return a > b ? a : b;
+}
 template <class T>
-inline T smaller(const T& a, const T& b) { return a < b ? a : b; }
+inline T smaller(const T& a, const T& b) {
+  return a < b ? a : b;
+}
 
 // The constant `a` as a T.
 template <class T>
 inline T constant(double a) {
-  if constexpr (sizeof(T) == sizeof(double)) return a;
-  else return splat(a);
+  if constexpr (sizeof(T) == sizeof(double))
+    return a;
+  else
+    return splat(a);
 }
 
 // exp(x) for -700 <= x <= 0, relative error below 4e-16: x = n ln 2 + r, |r| <= ln 2 / 2, Taylor series of exp(r).
@@ -67,8 +73,8 @@ inline T exp_negative(T x) {
   const T n = shifted - round_to_integer;
   const T r = (x - n * ln2_hi) - n * ln2_lo;
   T series = constant<T>(1.0 / 6227020800.0);
-  for (const double c : {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040, 1.0 / 720,
-                         1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0})
+  for (const double c : {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040,
+                         1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0})
     series = series * r + c;
   using Bits = std::conditional_t<sizeof(T) == sizeof(double), std::int64_t, OctetMask>;
   Bits bits, power;

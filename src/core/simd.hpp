@@ -129,7 +129,8 @@ inline int compress(std::uint32_t bits, const std::uint32_t* in, std::uint32_t* 
 inline Pack gather(const double* base, const std::uint32_t* index) {
   Pack p;
 #ifdef BAGNOLD_AVX512
-  p.v = _mm512_mask_i32gather_pd(Register{}, 0xff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), base, 8);
+  p.v =
+      _mm512_mask_i32gather_pd(Register{}, 0xff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), base, 8);
 #else
   for (int k = 0; k < register_lanes; ++k) p.set(k, base[index[k]]);
 #endif

@@ -6,7 +6,8 @@ namespace bagnold {
 
 template <int n, class F>
 [[gnu::always_inline]] inline void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) { (f(k), ...); }(std::make_integer_sequence<int, n>{});
+  [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) { (f(k), ...); }
+  (std::make_integer_sequence<int, n>{});
 }
 
 }  // namespace bagnold

@@ -21,16 +21,20 @@ namespace {
 void kick(DemState& state) {
   Grains& g = state.grains;
   const double dt = state.step == 0 ? 0.5 * state.dt : state.dt;
-  parallel_for(g.flowing, [&](std::int64_t k) {
-    const auto i = at(k);
-    g.v[i] += dt / g.mass[i] * g.force[i] + dt * state.gravity;
-    g.omega[i] += dt / g.inertia[i] * g.torque[i];
-  }, worth_threads(g));
+  parallel_for(
+      g.flowing,
+      [&](std::int64_t k) {
+        const auto i = at(k);
+        g.v[i] += dt / g.mass[i] * g.force[i] + dt * state.gravity;
+        g.omega[i] += dt / g.inertia[i] * g.torque[i];
+      },
+      worth_threads(g));
 }
 
 void drift(DemState& state) {
   Grains& g = state.grains;
-  parallel_for(g.flowing, [&](std::int64_t i) { g.x[at(i)] += state.dt * g.v[at(i)]; }, worth_threads(g));
+  parallel_for(
+      g.flowing, [&](std::int64_t i) { g.x[at(i)] += state.dt * g.v[at(i)]; }, worth_threads(g));
 }
 
 void check(const DemState& state, const ContactLaws& laws) {
@@ -80,11 +84,11 @@ void advance(DemState& state, const ContactLaws& laws, std::int64_t steps) {
 
 void advance_plain(DemState& state, const ContactLaws& laws, std::int64_t steps) {
   for (const std::int64_t end = state.step + steps; state.step < end;) {
-    kick(state);                                // v, omega at t + dt/2
-    drift(state);                               // x at t + dt
+    kick(state);   // v, omega at t + dt/2
+    drift(state);  // x at t + dt
     ++state.step;
-    refresh_pairs(state);                       // pairs (i, j) that may be in contact
-    evaluate_forces(state, laws, state.dt);     // springs by dt, then f, q at t + dt
+    refresh_pairs(state);                    // pairs (i, j) that may be in contact
+    evaluate_forces(state, laws, state.dt);  // springs by dt, then f, q at t + dt
     if (state.keep_ledger) balance_ledger(state, laws);
   }
 }

@@ -46,8 +46,13 @@ inline std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 inline bool worth_threads(const Grains& g) { return g.flowing >= 500; }
 
 inline Motion pair_motion(const Grains& g, std::size_t i, std::size_t j, const Vec3& r) {
-  return {numbers(r), numbers(g.v[i] - g.v[j]), numbers(g.omega[i] + g.omega[j]), numbers(g.omega[i] - g.omega[j]),
-          0.5 * (g.diameter[i] + g.diameter[j]), 0.5 * (g.diameter[i] - g.diameter[j]), 1.0};
+  return {numbers(r),
+          numbers(g.v[i] - g.v[j]),
+          numbers(g.omega[i] + g.omega[j]),
+          numbers(g.omega[i] - g.omega[j]),
+          0.5 * (g.diameter[i] + g.diameter[j]),
+          0.5 * (g.diameter[i] - g.diameter[j]),
+          1.0};
 }
 
 inline Size pair_size(const Grains& g, std::size_t i, std::size_t j) {
@@ -59,10 +64,17 @@ inline Size pair_size(const Grains& g, std::size_t i, std::size_t j) {
 inline double height_above(const Wall& wall, const Vec3& x) { return dot(x - wall.point, wall.normal); }
 
 inline Motion wall_motion(const Grains& g, std::size_t i, const Wall& wall) {
-  return {numbers(height_above(wall, g.x[i]) * wall.normal), numbers(g.v[i]), numbers(g.omega[i]), numbers(g.omega[i]),
-          0.5 * g.diameter[i], 0.5 * g.diameter[i], 0.0};
+  return {numbers(height_above(wall, g.x[i]) * wall.normal),
+          numbers(g.v[i]),
+          numbers(g.omega[i]),
+          numbers(g.omega[i]),
+          0.5 * g.diameter[i],
+          0.5 * g.diameter[i],
+          0.0};
 }
 
-inline Size wall_size(const Grains& g, std::size_t i) { return laws::sizes(2 / g.diameter[i], 0.0, 1 / g.mass[i], 0.0); }
+inline Size wall_size(const Grains& g, std::size_t i) {
+  return laws::sizes(2 / g.diameter[i], 0.0, 1 / g.mass[i], 0.0);
+}
 
 }  // namespace bagnold::dem

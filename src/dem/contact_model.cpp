@@ -54,7 +54,8 @@ Tables<R> table_of(const ContactModel& model, const std::vector<laws::NominalPai
         if constexpr (std::is_same_v<std::decay_t<decltype(constants)>, Constants>)
           table.push_back(constants);
         else
-          throw UnphysicalError("contact", "all pairs of species must use the same kinds of law and damping_convention");
+          throw UnphysicalError("contact",
+                                "all pairs of species must use the same kinds of law and damping_convention");
       });
   });
   return tables;
@@ -67,7 +68,8 @@ std::vector<laws::NominalPair> nominal_pairs(const Tables<laws::NormalLaws>& nor
       [&](const auto& table) {
         for (const auto& law : table) {
           const auto response = law.respond(0.0, laws::sizes(1, 1, 0.5 / pair_mass, 0.5 / pair_mass));
-          nominal.push_back({pair_mass, std::decay_t<decltype(law)>::constant_stiffness, response.stiffness, response.damping});
+          nominal.push_back(
+              {pair_mass, std::decay_t<decltype(law)>::constant_stiffness, response.stiffness, response.damping});
         }
       },
       normal);

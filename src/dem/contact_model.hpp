@@ -63,17 +63,17 @@ double mean_pair_mass(const Grains& grains);  // m/2 of the mean flowing grain
 // One line of the table of contact types: what a pair of species amounts to at its own masses.
 struct ContactType {
   std::string a, b;
-  double reduced_mass = 0;            // of mean grains; the grain's own mass against a base or a wall
-  double kn = 0, gamma_n = 0;         // damping as a force: f = kn delta - gamma_n v. For Hertz: tangent values at
-  double kt = 0, gamma_t = 0;         // an overlap of 1 % of the reduced radius
+  double reduced_mass = 0;     // of mean grains; the grain's own mass against a base or a wall
+  double kn = 0, gamma_n = 0;  // damping as a force: f = kn delta - gamma_n v. For Hertz: tangent values at
+  double kt = 0, gamma_t = 0;  // an overlap of 1 % of the reduced radius
   double mu = 0;
-  double tc = 0, restitution = 0;     // for Hertz: tc of impact at which the overlap would reach that 1 %
+  double tc = 0, restitution = 0;  // for Hertz: tc of impact at which the overlap would reach that 1 %
 };
 std::vector<ContactType> contact_types(const DemState& state, const ContactModel& model);
 
 // What `check` says of a step and a start.
 struct Finding {
-  bool error = false;                 // otherwise a warning
+  bool error = false;  // otherwise a warning
   std::string key, text;
 };
 // Of a prepared state: dt against tc of every contact type (> tc/10 error, > tc/20 warning), overlaps at the start

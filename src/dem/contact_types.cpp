@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/contact_laws.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/energy.hpp"
-#include "dem/contact_laws.hpp"
 
 namespace bagnold::dem {
 
@@ -52,9 +52,16 @@ template <class Law>
 ContactType describe(const Law& law, const Size& size, const ContactModel& model, std::size_t a, std::size_t b) {
   const auto normal = law.normal.respond(0.01 * size.reduced_radius, size);
   const laws::Collision collision = law.normal.collision(size);
-  return {.a = model.species[a], .b = model.species[b], .reduced_mass = size.reduced_mass(), .kn = normal.stiffness,
-          .gamma_n = normal.damping, .kt = law.tangential.stiffness(normal), .gamma_t = law.tangential.damping(normal),
-          .mu = law.tangential.mu, .tc = collision.time, .restitution = collision.restitution};
+  return {.a = model.species[a],
+          .b = model.species[b],
+          .reduced_mass = size.reduced_mass(),
+          .kn = normal.stiffness,
+          .gamma_n = normal.damping,
+          .kt = law.tangential.stiffness(normal),
+          .gamma_t = law.tangential.damping(normal),
+          .mu = law.tangential.mu,
+          .tc = collision.time,
+          .restitution = collision.restitution};
 }
 
 }  // namespace
@@ -69,8 +76,10 @@ std::vector<ContactType> contact_types(const DemState& state, const ContactModel
         const Occurrence &i = found[a], &j = found[b];
         if (!i.moves() || (j.moves() && b < a)) continue;  // fixed bodies never meet
         if (!j.moves() && j.fixed == 0 && !j.wall) continue;
-        const Size size = laws::sizes(1 / i.radius, j.radius > 0 ? 1 / j.radius : 0.0, 1 / i.mass, j.moves() ? 1 / j.mass : 0.0);
-        types.push_back(describe(tables.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)), size, model, a, b));
+        const Size size =
+            laws::sizes(1 / i.radius, j.radius > 0 ? 1 / j.radius : 0.0, 1 / i.mass, j.moves() ? 1 / j.mass : 0.0);
+        types.push_back(
+            describe(tables.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)), size, model, a, b));
       }
   });
   return types;
@@ -81,20 +90,23 @@ std::vector<Finding> physical_findings(const DemState& state, const ContactModel
   if (state.grains.flowing == 0) return {{true, "scenario", "there are no moving grains"}};
   for (const ContactType& type : contact_types(state, model)) {
     if (!std::isfinite(type.tc)) {
-      findings.push_back({false, "contact.damping", fmt::format("{}-{} is overdamped and never rebounds", type.a, type.b)});
+      findings.push_back(
+          {false, "contact.damping", fmt::format("{}-{} is overdamped and never rebounds", type.a, type.b)});
       continue;
     }
     const double steps = type.tc / state.dt;
     if (steps < 20 * (1 - 1e-9))
-      findings.push_back({steps < 10 * (1 - 1e-9), "time.step",
-                          fmt::format("{:g} is 1/{:.3g} of the collision time {:g} of {}-{}; expected at most 1/{} (1/50 is usual)",
-                                      state.dt, steps, type.tc, type.a, type.b, steps < 10 ? 10 : 20)});
+      findings.push_back(
+          {steps < 10 * (1 - 1e-9), "time.step",
+           fmt::format("{:g} is 1/{:.3g} of the collision time {:g} of {}-{}; expected at most 1/{} (1/50 is usual)",
+                       state.dt, steps, type.tc, type.a, type.b, steps < 10 ? 10 : 20)});
   }
   const double overlap = max_overlap_over_radius(state);
   if (overlap > 0.01)
     findings.push_back({overlap > 0.1, "scenario",
                         fmt::format("grains overlap at the start by up to {:.2g} of a radius, expected at most 0.1: "
-                                    "the springs would fling them apart", overlap)});
+                                    "the springs would fling them apart",
+                                    overlap)});
   return findings;
 }
 

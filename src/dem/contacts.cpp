@@ -30,13 +30,18 @@ std::vector<Contact> contacts(const DemState& state, const ContactLaws& laws) {
   return out;
 }
 
-void for_contact_batches(const DemState& state, const ContactLaws& laws, const std::function<void(std::span<const ContactForce>)>& f) {
+void for_contact_batches(const DemState& state, const ContactLaws& laws,
+                         const std::function<void(std::span<const ContactForce>)>& f) {
   std::array<ContactForce, 64> batch;
   std::size_t count = 0;
   with_laws(laws, [&](const auto& tables) {
     visit_contacts(state, tables, [&](const auto& c) {
-      batch[count++] = {static_cast<std::int32_t>(c.i), static_cast<std::int32_t>(c.j), vec3(c.motion.r), vec3(c.geometry.n),
-                        vec3(c.force.force), c.geometry.overlap};
+      batch[count++] = {static_cast<std::int32_t>(c.i),
+                        static_cast<std::int32_t>(c.j),
+                        vec3(c.motion.r),
+                        vec3(c.geometry.n),
+                        vec3(c.force.force),
+                        c.geometry.overlap};
       if (count < batch.size()) return;
       f(batch);
       count = 0;

@@ -22,6 +22,7 @@ struct ContactForce {
 };
 
 // f(contacts) for all of them in the stored order, a few at a time: nothing is stored for long and nothing allocated.
-void for_contact_batches(const DemState& state, const ContactLaws& laws, const std::function<void(std::span<const ContactForce>)>& f);
+void for_contact_batches(const DemState& state, const ContactLaws& laws,
+                         const std::function<void(std::span<const ContactForce>)>& f);
 
 }  // namespace bagnold::dem

@@ -6,8 +6,8 @@
 namespace bagnold::dem {
 
 struct Energies {
-  double translational = 0, rotational = 0;                 // of full-step velocities
-  double gravity = 0;                                       // -sum m g . x, periodic images followed
+  double translational = 0, rotational = 0;  // of full-step velocities
+  double gravity = 0;                        // -sum m g . x, periodic images followed
   double normal_spring = 0, tangential_spring = 0, rolling_spring = 0;
   double kinetic() const { return translational + rotational; }
   double elastic() const { return normal_spring + tangential_spring + rolling_spring; }

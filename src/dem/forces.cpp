@@ -56,7 +56,8 @@ Force act(Contacts& contacts, std::size_t k, const Law& law, const Motion& motio
 
 // Springs are forgotten when a contact opens.
 template <class Law, class Contacts>
-void open(Contacts& contacts, std::size_t k, const Law& law, const Motion& motion, const Size& size, double dt, Tally& tally) {
+void open(Contacts& contacts, std::size_t k, const Law& law, const Motion& motion, const Size& size, double dt,
+          Tally& tally) {
   const History history{numbers(contacts.spring[k]), numbers(contacts.roll[k])};
   tally.opened += energy_left(law, laws::pair_geometry(motion), size, history, dt);
   contacts.touching[k] = 0;
@@ -131,23 +132,29 @@ void add(DemState& state, const Tallies& tallies, int parts, double& excess) {
 template <bool KeepLedger, class Tables>
 double sum_forces(DemState& state, const Tables& tables, double dt) {
   Grains& g = state.grains;
-  parallel_for(g.flowing, [&](std::int64_t i) { g.force[at(i)] = g.torque[at(i)] = Vec3{}; }, worth_threads(g));
+  parallel_for(
+      g.flowing, [&](std::int64_t i) { g.force[at(i)] = g.torque[at(i)] = Vec3{}; }, worth_threads(g));
   double excess = 0;
   Tallies tallies;
   const auto shift = neighbours::image_shifts(state.box);
   const int slabs = static_cast<int>(state.pairs.slab_begin.size()) - 1;
   for (int parity = 0; parity < 2; ++parity)  // slab s writes to grains of s and s + 1
-    parallel_for((slabs + 1 - parity) / 2, [&](std::int64_t k) {
-      const int slab = static_cast<int>(2 * k) + parity;
-      tallies[at(slab)] = slab_forces<KeepLedger>(state, tables, shift, slab, dt);
-    }, worth_threads(g));
+    parallel_for((slabs + 1 - parity) / 2,
+                 [&](std::int64_t k) {
+                   const int slab = static_cast<int>(2 * k) + parity;
+                   tallies[at(slab)] = slab_forces<KeepLedger>(state, tables, shift, slab, dt);
+                 },
+                 worth_threads(g));
   add(state, tallies, slabs, excess);
   if (!state.walls.empty()) {
     const std::int64_t block = (g.flowing + max_parts - 1) / max_parts;
     const std::int64_t blocks = (g.flowing + block - 1) / block;
-    parallel_for(blocks, [&](std::int64_t b) {
-      tallies[at(b)] = wall_forces<KeepLedger>(state, tables, b * block, std::min((b + 1) * block, g.flowing), dt);
-    }, worth_threads(g));
+    parallel_for(
+        blocks,
+        [&](std::int64_t b) {
+          tallies[at(b)] = wall_forces<KeepLedger>(state, tables, b * block, std::min((b + 1) * block, g.flowing), dt);
+        },
+        worth_threads(g));
     add(state, tallies, static_cast<int>(blocks), excess);
   }
   return excess;
@@ -159,12 +166,15 @@ void report_overlap(const DemState& state) {
   const Grains& g = state.grains;
   const auto shift = neighbours::image_shifts(state.box);
   const auto fail = [&](std::int64_t id, const std::string& partner, double ratio) {
-    throw NumericalError(fmt::format("grain {} at step {} (t = {:g}): overlap with {} is {:.3g} of its radius; the contact "
-                                     "is too soft for the load or the step too long", id, state.step, state.time(), partner, ratio));
+    throw NumericalError(
+        fmt::format("grain {} at step {} (t = {:g}): overlap with {} is {:.3g} of its radius; the contact "
+                    "is too soft for the load or the step too long",
+                    id, state.step, state.time(), partner, ratio));
   };
   for (std::int64_t p = 0; p < state.pairs.size(); ++p) {
     const auto i = at(state.pairs.i[at(p)]), j = at(state.pairs.j[at(p)]);
-    const double overlap = 0.5 * (g.diameter[i] + g.diameter[j]) - norm(g.x[i] - g.x[j] - shift[state.pairs.image[at(p)]]);
+    const double overlap =
+        0.5 * (g.diameter[i] + g.diameter[j]) - norm(g.x[i] - g.x[j] - shift[state.pairs.image[at(p)]]);
     const double ratio = 2 * overlap / std::min(g.diameter[i], g.diameter[j]);
     if (ratio > state.max_overlap_ratio) fail(g.id[i], fmt::format("grain {}", g.id[j]), ratio);
   }

@@ -46,7 +46,8 @@ std::vector<Remembered> remember(const DemState& state) {
     const auto from = steps_to_box(state.box, state.grains.x[at(pairs.i[p])]);
     const auto to = steps_to_box(state.box, state.grains.x[at(pairs.j[p])]);
     for (std::size_t k = 0; k < 3; ++k) image[k] += to[k] - from[k];
-    kept.push_back({pairs.i[p], pairs.j[p], neighbours::image_code(image[0], image[1], image[2]), pairs.spring[p], pairs.roll[p]});
+    kept.push_back(
+        {pairs.i[p], pairs.j[p], neighbours::image_code(image[0], image[1], image[2]), pairs.spring[p], pairs.roll[p]});
   }
   return kept;
 }
@@ -122,21 +123,24 @@ void store(DemState& state, const std::vector<std::vector<Listed>>& listed, int 
   std::partial_sum(row.begin(), row.end(), row.begin());
   std::stable_sort(kept.begin(), kept.end(), [](const Remembered& a, const Remembered& b) { return a.i < b.i; });
 
-  parallel_for(slabs, [&](std::int64_t s) {
-    auto p = at(pairs.slab_begin[at(s)]);
-    for (const Listed& pair : listed[at(s)]) {
-      pairs.i[p] = pair.i;
-      pairs.j[p] = pair.j;
-      pairs.image[p] = pair.image;
-      for (auto k = at(row[at(pair.i)]); k < at(row[at(pair.i) + 1]); ++k) {
-        if (kept[k].j != pair.j || kept[k].image != pair.image) continue;
-        pairs.touching[p] = 1;
-        pairs.spring[p] = kept[k].spring;
-        pairs.roll[p] = kept[k].roll;
-      }
-      ++p;
-    }
-  }, worth_threads(state.grains));
+  parallel_for(
+      slabs,
+      [&](std::int64_t s) {
+        auto p = at(pairs.slab_begin[at(s)]);
+        for (const Listed& pair : listed[at(s)]) {
+          pairs.i[p] = pair.i;
+          pairs.j[p] = pair.j;
+          pairs.image[p] = pair.image;
+          for (auto k = at(row[at(pair.i)]); k < at(row[at(pair.i) + 1]); ++k) {
+            if (kept[k].j != pair.j || kept[k].image != pair.image) continue;
+            pairs.touching[p] = 1;
+            pairs.spring[p] = kept[k].spring;
+            pairs.roll[p] = kept[k].roll;
+          }
+          ++p;
+        }
+      },
+      worth_threads(state.grains));
 }
 
 }  // namespace
@@ -150,11 +154,13 @@ void check_motion(const DemState& state) {
   const Grains& g = state.grains;
   for (std::int64_t i = 0; i < g.flowing; ++i) {
     const double moved = norm(g.v[at(i)]) * state.dt;
-    const char* cause = !(std::isfinite(norm2(g.x[at(i)])) && std::isfinite(moved)) ? "position or velocity is not finite"
+    const char* cause = !(std::isfinite(norm2(g.x[at(i)])) && std::isfinite(moved))
+                            ? "position or velocity is not finite"
                         : moved > 0.5 * g.diameter[at(i)] ? "moved by more than half its diameter in one step"
                                                           : nullptr;
     if (cause != nullptr)
-      throw NumericalError(fmt::format("grain {} at step {} (t = {:g}): {}", g.id[at(i)], state.step, state.time(), cause));
+      throw NumericalError(
+          fmt::format("grain {} at step {} (t = {:g}): {}", g.id[at(i)], state.step, state.time(), cause));
   }
 }
 
@@ -183,8 +189,9 @@ void rebuild_pairs(DemState& state) {
   }
   const auto shift = neighbours::image_shifts(state.box);
   std::vector<std::vector<Listed>> listed(at(grid.slabs));
-  parallel_for(grid.slabs, [&](std::int64_t s) { list_slab(state, grid, shift, static_cast<int>(s), listed[at(s)]); },
-               worth_threads(g));
+  parallel_for(
+      grid.slabs, [&](std::int64_t s) { list_slab(state, grid, shift, static_cast<int>(s), listed[at(s)]); },
+      worth_threads(g));
   store(state, listed, grid.slabs, kept);
   state.pairs.reference.assign(g.x.begin(), g.x.begin() + g.flowing);
   state.pairs.origin.clear();

@@ -7,21 +7,21 @@
 
 #include "core/arrays.hpp"
 #include "core/box.hpp"
-#include "neighbours/cell_grid.hpp"
 #include "core/vec3.hpp"
+#include "neighbours/cell_grid.hpp"
 
 namespace bagnold::dem {
 
 // Spheres, one array per quantity. Grains [0, flowing) move; [flowing, size) are fixed (base): infinite mass, v = 0,
 // omega = 0. `mass` and `inertia` of a fixed grain are those of its material; only the integrator ignores it.
 struct Grains {
-  std::vector<Vec3> x;                    // centres at t; periodic directions need not be wrapped
-  std::vector<Vec3> v, omega;             // velocity, angular velocity at t - dt/2 (they enter the forces); before
-                                          // the first step, at t
-  std::vector<Vec3> force, torque;        // at t, gravity not included in `force`
+  std::vector<Vec3> x;              // centres at t; periodic directions need not be wrapped
+  std::vector<Vec3> v, omega;       // velocity, angular velocity at t - dt/2 (they enter the forces); before
+                                    // the first step, at t
+  std::vector<Vec3> force, torque;  // at t, gravity not included in `force`
   std::vector<double> diameter, mass, inertia;
-  std::vector<std::int32_t> species;      // index into the contact model's species
-  std::vector<std::int64_t> id;           // survives reordering; stable name of the grain in every output
+  std::vector<std::int32_t> species;  // index into the contact model's species
+  std::vector<std::int64_t> id;       // survives reordering; stable name of the grain in every output
   std::int64_t flowing = 0;
   std::int64_t size() const { return static_cast<std::int64_t>(x.size()); }
 };
@@ -34,15 +34,15 @@ struct Wall {
 
 // One touching pair as observers see it: a function of the state (dem/contacts.hpp lists them on request).
 struct Contact {
-  std::int32_t i = 0;        // a flowing grain
-  std::int32_t j = 0;        // another grain, or -1 - w for wall w
-  Vec3 branch{};             // r_ij = x_i - x_j, minimum image; at a wall from the foot of the perpendicular to x_i
-  Vec3 normal{};             // unit vector from j to i
-  double overlap = 0;        // delta_n > 0
-  Vec3 force{}, torque{};    // on i: force, and torque about x_i
-  Vec3 torque_j{};           // on j about x_j
-  Vec3 normal_force{};       // part of `force` along `normal`
-  Vec3 spring{};             // tangential displacement delta_t
+  std::int32_t i = 0;      // a flowing grain
+  std::int32_t j = 0;      // another grain, or -1 - w for wall w
+  Vec3 branch{};           // r_ij = x_i - x_j, minimum image; at a wall from the foot of the perpendicular to x_i
+  Vec3 normal{};           // unit vector from j to i
+  double overlap = 0;      // delta_n > 0
+  Vec3 force{}, torque{};  // on i: force, and torque about x_i
+  Vec3 torque_j{};         // on j about x_j
+  Vec3 normal_force{};     // part of `force` along `normal`
+  Vec3 spring{};           // tangential displacement delta_t
 };
 
 // Verlet list: every pair that can touch before some grain has moved by more than half the skin, each pair once, with
@@ -96,18 +96,18 @@ struct DemState {
   std::vector<Wall> walls;
   Vec3 gravity{};
   double dt = 0;
-  std::int64_t step = 0;              // time = step * dt
+  std::int64_t step = 0;  // time = step * dt
 
-  double skin = 0;                    // margin of the Verlet list; 0: chosen by prepare()
-  bool keep_ledger = false;           // costs a second look at every contact
-  std::int64_t reorder_every = 0;     // steps between spatial sorts of the grains (0: never); ids follow the grains
-  double max_overlap_ratio = 0.5;     // overlap/radius beyond which a step fails
+  double skin = 0;                 // margin of the Verlet list; 0: chosen by prepare()
+  bool keep_ledger = false;        // costs a second look at every contact
+  std::int64_t reorder_every = 0;  // steps between spatial sorts of the grains (0: never); ids follow the grains
+  double max_overlap_ratio = 0.5;  // overlap/radius beyond which a step fails
 
   PairList pairs;
   WallContacts wall_contacts;
   Ledger ledger;
-  std::int64_t rebuilds = 0;          // of the Verlet list
-  std::int64_t next_reorder = 0;      // step
+  std::int64_t rebuilds = 0;      // of the Verlet list
+  std::int64_t next_reorder = 0;  // step
 
   EngineHandle engine;
 

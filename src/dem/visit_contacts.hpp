@@ -21,7 +21,8 @@ void visit_contacts(const DemState& state, const Tables& tables, F&& f) {
   const Grains& g = state.grains;
   const auto visit = [&](std::int64_t i, std::int64_t j, const auto& law, const Motion& motion, const Size& size,
                          const Vec3& spring, const Vec3& roll) {
-    ContactView<std::decay_t<decltype(law)>> c{i, j, law, motion, size, laws::pair_geometry(motion), {numbers(spring), numbers(roll)}, {}};
+    ContactView<std::decay_t<decltype(law)>> c{
+        i, j, law, motion, size, laws::pair_geometry(motion), {numbers(spring), numbers(roll)}, {}};
     c.force = laws::interact<false>(law, c.geometry, size, 0.0, c.history);
     f(c);
   };
@@ -31,14 +32,16 @@ void visit_contacts(const DemState& state, const Tables& tables, F&& f) {
     if (!pairs.touching[p]) continue;
     const auto i = at(pairs.i[p]), j = at(pairs.j[p]);
     visit(pairs.i[p], pairs.j[p], tables.of(g.species[i], g.species[j]),
-          pair_motion(g, i, j, g.x[i] - g.x[j] - shift[pairs.image[p]]), pair_size(g, i, j), pairs.spring[p], pairs.roll[p]);
+          pair_motion(g, i, j, g.x[i] - g.x[j] - shift[pairs.image[p]]), pair_size(g, i, j), pairs.spring[p],
+          pairs.roll[p]);
   }
   const WallContacts& at_walls = state.wall_contacts;
   for (std::size_t k = 0; k < at_walls.touching.size(); ++k) {
     if (!at_walls.touching[k]) continue;
     const std::size_t w = k / at(g.flowing), i = k % at(g.flowing);
-    visit(static_cast<std::int64_t>(i), -1 - static_cast<std::int64_t>(w), tables.of(g.species[i], state.walls[w].species),
-          wall_motion(g, i, state.walls[w]), wall_size(g, i), at_walls.spring[k], at_walls.roll[k]);
+    visit(static_cast<std::int64_t>(i), -1 - static_cast<std::int64_t>(w),
+          tables.of(g.species[i], state.walls[w].species), wall_motion(g, i, state.walls[w]), wall_size(g, i),
+          at_walls.spring[k], at_walls.roll[k]);
   }
 }
 

@@ -48,14 +48,16 @@ void LammpsDump::fail(const std::string& what) const {
 }
 
 void LammpsDump::read_box(const std::string& header, LammpsFrame& frame) {
-  const auto words = words_of(header);   // ITEM: BOX BOUNDS pp pp ff
-  if (words.size() != 6) fail("a box that is not orthogonal is not supported, expected ITEM: BOX BOUNDS with three boundary flags");
+  const auto words = words_of(header);  // ITEM: BOX BOUNDS pp pp ff
+  if (words.size() != 6)
+    fail("a box that is not orthogonal is not supported, expected ITEM: BOX BOUNDS with three boundary flags");
   for (int a = 0; a < 3; ++a) {
     frame.periodic[static_cast<std::size_t>(a)] = words[3 + static_cast<std::size_t>(a)] == "pp";
     std::string text;
     if (!line(text)) fail("the file ends within the bounds of the box");
     const auto bounds = words_of(text);
-    const auto lo = bounds.empty() ? std::nullopt : number(bounds[0]), hi = bounds.size() < 2 ? std::nullopt : number(bounds[1]);
+    const auto lo = bounds.empty() ? std::nullopt : number(bounds[0]),
+               hi = bounds.size() < 2 ? std::nullopt : number(bounds[1]);
     if (!lo || !hi) fail("expected two numbers, the bounds of the box");
     frame.lo[a] = *lo;
     frame.hi[a] = *hi;
@@ -63,14 +65,15 @@ void LammpsDump::read_box(const std::string& header, LammpsFrame& frame) {
 }
 
 void LammpsDump::read_rows(const std::string& header, std::size_t count, LammpsFrame& frame) {
-  const auto words = words_of(header);   // ITEM: ATOMS id type ..., ITEM: ENTRIES index c_1[1] ...
+  const auto words = words_of(header);  // ITEM: ATOMS id type ..., ITEM: ENTRIES index c_1[1] ...
   frame.columns.assign(words.begin() + 2, words.end());
   frame.values.reserve(count * frame.columns.size());
   std::string text;
   for (std::size_t row = 0; row < count; ++row) {
     if (!line(text)) fail(fmt::format("the file ends after {} of {} rows", row, count));
     const auto cells = words_of(text);
-    if (cells.size() != frame.columns.size()) fail(fmt::format("{} values, expected {}", cells.size(), frame.columns.size()));
+    if (cells.size() != frame.columns.size())
+      fail(fmt::format("{} values, expected {}", cells.size(), frame.columns.size()));
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const auto value = number(cells[c]);
       if (!value) fail(fmt::format("'{}' in column {}, expected a number", cells[c], frame.columns[c]));
@@ -90,11 +93,16 @@ std::optional<LammpsFrame> LammpsDump::next() {
     return *value;
   };
   while (line(text)) {
-    if (text.starts_with("ITEM: TIMESTEP")) frame.step = static_cast<std::int64_t>(integer());
-    else if (text.starts_with("ITEM: TIME")) frame.time = integer();
-    else if (text.starts_with("ITEM: NUMBER OF")) count = static_cast<std::size_t>(integer());
-    else if (text.starts_with("ITEM: BOX BOUNDS")) read_box(text, frame);
-    else if (text.starts_with("ITEM: UNITS")) line(text);
+    if (text.starts_with("ITEM: TIMESTEP"))
+      frame.step = static_cast<std::int64_t>(integer());
+    else if (text.starts_with("ITEM: TIME"))
+      frame.time = integer();
+    else if (text.starts_with("ITEM: NUMBER OF"))
+      count = static_cast<std::size_t>(integer());
+    else if (text.starts_with("ITEM: BOX BOUNDS"))
+      read_box(text, frame);
+    else if (text.starts_with("ITEM: UNITS"))
+      line(text);
     else if (text.starts_with("ITEM: ATOMS") || text.starts_with("ITEM: ENTRIES")) {
       frame.atoms = text.starts_with("ITEM: ATOMS");
       read_rows(text, count, frame);

@@ -15,12 +15,12 @@ namespace bagnold::io {
 // One instant of a dump.
 struct LammpsFrame {
   std::int64_t step = 0;
-  std::optional<double> time;              // if the dump says so (dump_modify time yes)
+  std::optional<double> time;  // if the dump says so (dump_modify time yes)
   Vec3 lo{}, hi{};
   std::array<bool, 3> periodic{};
-  bool atoms = true;                       // false: entries of a local dump
+  bool atoms = true;  // false: entries of a local dump
   std::vector<std::string> columns;
-  std::vector<double> values;              // row-major
+  std::vector<double> values;  // row-major
   std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
   std::optional<std::size_t> find(const std::string& column) const;
   double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }
@@ -29,7 +29,7 @@ struct LammpsFrame {
 // Reads a dump instant by instant.
 class LammpsDump {
  public:
-  explicit LammpsDump(const std::filesystem::path& path);   // throws IoError
+  explicit LammpsDump(const std::filesystem::path& path);  // throws IoError
   // The next instant; nothing at the end. Throws InputError with file and line where the file is not a dump,
   // or is one of a kind not supported (triclinic boxes, columns that are not numbers).
   std::optional<LammpsFrame> next();

@@ -47,7 +47,10 @@ std::optional<MercuryParticles> MercuryData::next() {
     ++line_;
   } while (is_blank(text));
   const auto header = numbers_of(text);
-  if (header.size() != 8) fail(path_, line_, fmt::format("{} numbers, expected the header of an instant in three dimensions: N, time, and the six bounds", header.size()));
+  if (header.size() != 8)
+    fail(path_, line_,
+         fmt::format("{} numbers, expected the header of an instant in three dimensions: N, time, and the six bounds",
+                     header.size()));
   MercuryParticles out;
   out.time = header[1];
   out.lo = {header[2], header[3], header[4]};
@@ -57,7 +60,10 @@ std::optional<MercuryParticles> MercuryData::next() {
     if (!std::getline(in_, text)) fail(path_, line_, fmt::format("the file ends after {} of {} particles", i, n));
     ++line_;
     const auto q = numbers_of(text);
-    if (q.size() != 14) fail(path_, line_, fmt::format("{} numbers, expected 14: position, velocity, radius, angles, angular velocity, info", q.size()));
+    if (q.size() != 14)
+      fail(
+          path_, line_,
+          fmt::format("{} numbers, expected 14: position, velocity, radius, angles, angular velocity, info", q.size()));
     out.x.push_back({q[0], q[1], q[2]});
     out.v.push_back({q[3], q[4], q[5]});
     out.radius.push_back(q[6]);
@@ -85,14 +91,17 @@ std::optional<MercuryContacts> MercuryFstat::next() {
     ++line_;
     if (is_blank(text)) continue;
     if (text[0] == '#') {
-      if (header_lines++ < 3) continue;   // three lines a header
+      if (header_lines++ < 3) continue;  // three lines a header
       held_ = text;
       break;
     }
     header_lines = 3;
     const auto q = numbers_of(text);
     if (q.size() != 16)
-      fail(path_, line_, fmt::format("{} numbers, expected 16: time, i, j, contact point, overlap, tangential overlap, |fn|, |ft|, normal, tangent", q.size()));
+      fail(path_, line_,
+           fmt::format("{} numbers, expected 16: time, i, j, contact point, overlap, tangential overlap, |fn|, |ft|, "
+                       "normal, tangent",
+                       q.size()));
     MercuryContact c;
     c.i = static_cast<std::int64_t>(q[1]);
     c.j = static_cast<std::int64_t>(q[2]);

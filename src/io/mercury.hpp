@@ -13,17 +13,17 @@ namespace bagnold::io {
 
 struct MercuryParticles {
   double time = 0;
-  Vec3 lo{}, hi{};                       // of the domain
+  Vec3 lo{}, hi{};  // of the domain
   std::vector<Vec3> x, v, omega;
-  std::vector<double> radius, info;      // info: the species, unless the driver writes something else there
+  std::vector<double> radius, info;  // info: the species, unless the driver writes something else there
 };
 
 // A contact as it concerns `i`; pairs of free particles appear twice in a file, once for each.
 struct MercuryContact {
-  std::int64_t i = 0, j = 0;             // rows of the particles; j < 0: wall -1 - j
+  std::int64_t i = 0, j = 0;  // rows of the particles; j < 0: wall -1 - j
   double overlap = 0;
-  Vec3 normal{};                         // unit, from j to i (walls are turned round: the file has them the other way)
-  Vec3 force{};                          // on i
+  Vec3 normal{};  // unit, from j to i (walls are turned round: the file has them the other way)
+  Vec3 force{};   // on i
 };
 
 struct MercuryContacts {
@@ -52,7 +52,7 @@ class MercuryFstat {
   std::filesystem::path path_;
   std::ifstream in_;
   std::int64_t line_ = 0;
-  std::string held_;                     // first header line of the next instant
+  std::string held_;  // first header line of the next instant
 };
 
 }  // namespace bagnold::io

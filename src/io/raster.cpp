@@ -56,7 +56,8 @@ Raster read_raster(const std::filesystem::path& path) {
   r.values.resize(rows.size());
   for (int j = 0; j < r.ny; ++j)
     for (int i = 0; i < r.nx; ++i) {
-      const double v = rows[static_cast<std::size_t>(north_up ? r.ny - 1 - j : j) * static_cast<std::size_t>(r.nx) + static_cast<std::size_t>(i)];
+      const double v = rows[static_cast<std::size_t>(north_up ? r.ny - 1 - j : j) * static_cast<std::size_t>(r.nx) +
+                            static_cast<std::size_t>(i)];
       r.values[static_cast<std::size_t>(j) * static_cast<std::size_t>(r.nx) + static_cast<std::size_t>(i)] =
           has != 0 && v == missing ? std::numeric_limits<double>::quiet_NaN() : v;
     }
@@ -79,14 +80,16 @@ void write_raster(const std::filesystem::path& path, const Raster& r) {
   std::vector<double> row(static_cast<std::size_t>(r.nx));
   for (int j = 0; j < r.ny; ++j) {
     for (int i = 0; i < r.nx; ++i) {
-      const double v = r.values[static_cast<std::size_t>(r.ny - 1 - j) * static_cast<std::size_t>(r.nx) + static_cast<std::size_t>(i)];
+      const double v = r.values[static_cast<std::size_t>(r.ny - 1 - j) * static_cast<std::size_t>(r.nx) +
+                                static_cast<std::size_t>(i)];
       row[static_cast<std::size_t>(i)] = std::isnan(v) ? no_data : v;
     }
     if (band->RasterIO(GF_Write, 0, j, r.nx, 1, row.data(), r.nx, 1, GDT_Float64, 0, 0) != CE_None)
       throw IoError(fmt::format("{}: {}", path.string(), CPLGetLastErrorMsg()));
   }
   char** options = nullptr;
-  options = ascii ? CSLSetNameValue(options, "DECIMAL_PRECISION", "6") : CSLSetNameValue(options, "COMPRESS", "DEFLATE");
+  options =
+      ascii ? CSLSetNameValue(options, "DECIMAL_PRECISION", "6") : CSLSetNameValue(options, "COMPRESS", "DEFLATE");
   const Dataset written(driver->CreateCopy(path.c_str(), data.get(), FALSE, options, nullptr, nullptr));
   CSLDestroy(options);
   if (!written) throw IoError(fmt::format("{}: {}", path.string(), CPLGetLastErrorMsg()));
@@ -139,7 +142,8 @@ bool same_projection(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return true;
   OGRSpatialReference first, second;
   if (first.importFromWkt(a.c_str()) != OGRERR_NONE || second.importFromWkt(b.c_str()) != OGRERR_NONE) return a == b;
-  const char* options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+  const char* options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+                           nullptr};
   return first.IsSame(&second, options) != 0;
 }
 

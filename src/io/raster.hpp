@@ -12,8 +12,8 @@ namespace bagnold::io {
 struct Raster {
   int nx = 0, ny = 0;
   double x0 = 0, y0 = 0, dx = 1, dy = 1;
-  std::vector<double> values;   // values[j * nx + i]
-  std::string projection;       // WKT; empty when the file has none
+  std::vector<double> values;  // values[j * nx + i]
+  std::string projection;      // WKT; empty when the file has none
 };
 
 // First band of any raster GDAL can read (GeoTIFF, ESRI ASCII grid, ...). Throws IoError when it cannot be opened,
@@ -30,7 +30,7 @@ struct Polygon {
 };
 struct PolygonLayer {
   std::vector<Polygon> polygons;
-  std::string projection;           // WKT
+  std::string projection;  // WKT
 };
 // First layer of a vector file (GeoJSON, Shapefile, ...). Throws IoError; InputError when it holds no polygon.
 PolygonLayer read_polygons(const std::filesystem::path& path);

@@ -47,84 +47,48 @@
 namespace bagnold::laws {
 
 // Normal contact forces.
-using NormalLaws = Registry<
-    Linear,
-    Hertz>;
+using NormalLaws = Registry<Linear, Hertz>;
 
 // Tangential contact forces.
-using TangentialLaws = Registry<
-    LinearHistory,
-    Mindlin>;
+using TangentialLaws = Registry<LinearHistory, Mindlin>;
 
 // Resistance to rolling.
-using RollingLaws = Registry<
-    NoRollingResistance,
-    SpringSlider>;
+using RollingLaws = Registry<NoRollingResistance, SpringSlider>;
 
 // Coarse-graining functions.
-using CgKernels = Registry<
-    CgGaussian,
-    CgLucy,
-    CgHeaviside>;
+using CgKernels = Registry<CgGaussian, CgLucy, CgHeaviside>;
 
 // Basal friction of the depth-averaged layer, mu(h, F).
-using FrictionLaws = Registry<
-    Coulomb,
-    PouliquenForterre,
-    ExponentialFriction,
-    Jenkins,
-    Voellmy,
-    MuOfI>;
+using FrictionLaws = Registry<Coulomb, PouliquenForterre, ExponentialFriction, Jenkins, Voellmy, MuOfI>;
 
 // Mean solid volume fraction of the layer as a function of the friction angle.
-using DensityLaws = Registry<
-    ConstantDensity,
-    ExponentialAngleDensity>;
+using DensityLaws = Registry<ConstantDensity, ExponentialAngleDensity>;
 
 // Ratio of the normal stresses K = sigma_xx/sigma_zz.
-using StressRatioLaws = Registry<
-    ConstantStressRatio,
-    LinearAngleStressRatio>;
+using StressRatioLaws = Registry<ConstantStressRatio, LinearAngleStressRatio>;
 
 // Shape factor alpha = mean(u^2)/mean(u)^2.
-using ShapeFactorLaws = Registry<
-    ConstantShapeFactor,
-    StrainModelShapeFactor>;
+using ShapeFactorLaws = Registry<ConstantShapeFactor, StrainModelShapeFactor>;
 
 // Friction of continua, mu(i).
-using Rheologies = Registry<
-    rheology::MuI,
-    rheology::MuICollisional>;
+using Rheologies = Registry<rheology::MuI, rheology::MuICollisional>;
 
 // Volume fraction of continua, phi(i).
-using Dilatancies = Registry<
-    dilatancy::Linear,
-    dilatancy::Rational>;
+using Dilatancies = Registry<dilatancy::Linear, dilatancy::Rational>;
 
 // Pressure of grains.
-using GrainEos = Registry<
-    eos::CompressibleGrains>;
+using GrainEos = Registry<eos::CompressibleGrains>;
 
 // Viscosity at rest.
-using Regularisations = Registry<
-    regularisation::Minatti2015,
-    regularisation::Papanastasiou,
-    regularisation::Simple>;
+using Regularisations = Registry<regularisation::Minatti2015, regularisation::Papanastasiou, regularisation::Simple>;
 
 // Smoothing kernels.
-using SphKernels = Registry<
-    kernel::WendlandC2,
-    kernel::WendlandC4>;
+using SphKernels = Registry<kernel::WendlandC2, kernel::WendlandC4>;
 
 // Mean viscosity of two particles.
-using ViscosityMeans = Registry<
-    mean::Harmonic,
-    mean::Arithmetic,
-    mean::Geometric>;
+using ViscosityMeans = Registry<mean::Harmonic, mean::Arithmetic, mean::Geometric>;
 
 // Discrete pressure and viscous forces.
-using ViscousOperators = Registry<
-    viscous::Cleary,
-    viscous::Variational>;
+using ViscousOperators = Registry<viscous::Cleary, viscous::Variational>;
 
 }  // namespace bagnold::laws

@@ -22,17 +22,15 @@ std::array<Vec3, 27> image_shifts(const Box& box);
 // Cells are stored with the direction of most cells slowest; layers of cells along it form slabs. The pairs of slab
 // s involve points of slabs s and s + 1 only, so slabs of one parity can be worked on at the same time.
 struct CellGrid {
-  std::array<int, 3> axis{0, 1, 2};      // directions, slowest first
-  std::array<int, 3> count{1, 1, 1};     // cells along axis[k]
-  std::array<bool, 3> periodic{};        // along axis[k]
-  Vec3 origin{}, cell{};                 // by direction
+  std::array<int, 3> axis{0, 1, 2};   // directions, slowest first
+  std::array<int, 3> count{1, 1, 1};  // cells along axis[k]
+  std::array<bool, 3> periodic{};     // along axis[k]
+  Vec3 origin{}, cell{};              // by direction
   int slabs = 1;
   std::vector<std::int32_t> cell_begin;  // points of cell c: order[cell_begin[c] .. cell_begin[c + 1])
   std::vector<std::int32_t> order;
   std::vector<std::int32_t> cell_of;
-  std::int32_t layer_begin(int slab) const {
-    return static_cast<std::int32_t>(std::int64_t{slab} * count[0] / slabs);
-  }
+  std::int32_t layer_begin(int slab) const { return static_cast<std::int32_t>(std::int64_t{slab} * count[0] / slabs); }
 };
 
 // Sorts `x` (inside the box in periodic directions) into cells no smaller than `cutoff`.
@@ -55,7 +53,8 @@ void for_each_pair(const CellGrid& grid, int slab, F&& f) {
     for (std::size_t k = 0; k < 3; ++k) image[static_cast<std::size_t>(grid.axis[k])] = along[k];
     const auto code = image_code(image[0], image[1], image[2]);
     const auto c = static_cast<std::size_t>((c0 * n1 + c1) * n2 + c2);
-    for (auto q = grid.cell_begin[c]; q < grid.cell_begin[c + 1]; ++q) f(i, grid.order[static_cast<std::size_t>(q)], code);
+    for (auto q = grid.cell_begin[c]; q < grid.cell_begin[c + 1]; ++q)
+      f(i, grid.order[static_cast<std::size_t>(q)], code);
   };
   const int first = grid.layer_begin(slab) * n1 * n2, last = grid.layer_begin(slab + 1) * n1 * n2;
   for (int home = first; home < last; ++home) {

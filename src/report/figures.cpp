@@ -191,10 +191,15 @@ void add_profiles(std::vector<Figure>& all, std::span<const RunData> runs) {
 // Figure 14: the rate of strain in units of the mean one, over the depth in units of the height, and Bagnold's,
 // (5/2) (1 - z/h)^(1/2).
 void add_strain(std::vector<Figure>& all, std::span<const RunData> runs) {
-  Figure figure{"strain",
-                "Rate of strain over its depth average, (h/u) du/dz, against height over flow height. Dashed: Bagnold's "
-                "profile (Weinhart et al. 2012, figure 14).",
-                "(h/u) du/dz", "(z - b)/h", false, false, {}};
+  Figure figure{
+      "strain",
+      "Rate of strain over its depth average, (h/u) du/dz, against height over flow height. Dashed: Bagnold's "
+      "profile (Weinhart et al. 2012, figure 14).",
+      "(h/u) du/dz",
+      "(z - b)/h",
+      false,
+      false,
+      {}};
   for (const auto& run : runs) {
     const double h = number(run, "flow", "h"), base = number(run, "flow", "base"), mean = number(run, "flow", "u_bar");
     if (!run.profile || !run.profile->has("grad_u_xz") || !std::isfinite(h * base / mean)) continue;

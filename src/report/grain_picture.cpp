@@ -76,8 +76,10 @@ bool draw_grains(const std::filesystem::path& run, const std::filesystem::path& 
   if (layer.flowing.empty()) return false;
 
   std::string script = fmt::format(
-      "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel 'x'\nset ylabel 'z'\nset border 3\nset tics nomirror out\n"
-      "set palette defined (0 '#3b4cc0', 0.5 '#dddddd', 1 '#b40426')\nset cblabel 'speed'\nset style fill solid 1 border lc rgb '#222222'\nunset key\nplot ",
+      "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel 'x'\nset ylabel 'z'\nset border 3\nset "
+      "tics nomirror out\n"
+      "set palette defined (0 '#3b4cc0', 0.5 '#dddddd', 1 '#b40426')\nset cblabel 'speed'\nset style fill solid 1 "
+      "border lc rgb '#222222'\nunset key\nplot ",
       layer.x_min, layer.x_max, layer.z_min, layer.z_max);
   std::vector<io::PlotData> data{columns("flowing", layer.flowing)};
   if (!layer.fixed.empty()) {

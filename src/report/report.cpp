@@ -130,7 +130,9 @@ void write_report(const std::vector<std::filesystem::path>& directories, const s
     const auto svg = folder / (name + ".svg");
     if (!draw_grains(directories[k], svg)) continue;
     for (const auto& format : formats) draw_grains(directories[k], folder / (name + "." + format));
-    pictures += picture(io::read_file(svg), {.name = name, .caption = "The last snapshot of " + runs[k].name + " from the side, its front layer."});
+    pictures +=
+        picture(io::read_file(svg),
+                {.name = name, .caption = "The last snapshot of " + runs[k].name + " from the side, its front layer."});
   }
   for (const auto& figure : figures(runs)) {
     const auto svg = folder / (figure.name + ".svg");

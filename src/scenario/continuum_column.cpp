@@ -17,14 +17,17 @@ void set_geometry(const ContinuumColumn& column, ColumnGeometry geometry, sph::M
 
 sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geometry, const sph::Model& model) {
   const double dp = column.spacing;
-  const auto up = std::max<std::int64_t>(1, std::llround(column.height / dp)), out = std::max<std::int64_t>(1, std::llround(column.radius / dp));
+  const auto up = std::max<std::int64_t>(1, std::llround(column.height / dp)),
+             out = std::max<std::int64_t>(1, std::llround(column.radius / dp));
   std::vector<std::array<double, 2>> base;  // horizontal positions
   for (std::int64_t a = geometry == ColumnGeometry::axisymmetric ? 0 : -out; a < out; ++a) {
     const double x = (static_cast<double>(a) + 0.5) * dp;
-    if (geometry != ColumnGeometry::cylinder) base.push_back({x, 0});
+    if (geometry != ColumnGeometry::cylinder)
+      base.push_back({x, 0});
     else
       for (std::int64_t b = -out; b < out; ++b)
-        if (const double y = (static_cast<double>(b) + 0.5) * dp; x * x + y * y < column.radius * column.radius) base.push_back({x, y});
+        if (const double y = (static_cast<double>(b) + 0.5) * dp; x * x + y * y < column.radius * column.radius)
+          base.push_back({x, y});
   }
   auto p = sph::make_particles(static_cast<std::int64_t>(base.size()) * up, model.dim);
   const auto vertical = static_cast<std::size_t>(model.vertical());

@@ -45,7 +45,8 @@ void add_base(dem::DemState& state, const std::vector<Vec3>& patch, double diame
   for (int ix = 0; ix < nx; ++ix)
     for (int iy = 0; iy < ny; ++iy)
       for (const Vec3& x : patch)
-        add_grain(state.grains, state.box.origin + Vec3{ix * patch_size.x, iy * patch_size.y, 0} + diameter * x, diameter, density, base_species);
+        add_grain(state.grains, state.box.origin + Vec3{ix * patch_size.x, iy * patch_size.y, 0} + diameter * x,
+                  diameter, density, base_species);
 }
 
 std::vector<Sphere> base_spheres(const dem::Grains& grains) {
@@ -55,11 +56,13 @@ std::vector<Sphere> base_spheres(const dem::Grains& grains) {
 }
 
 // Puts the flowing grains before the base that was built first.
-dem::DemState with_flowing(dem::DemState state, const std::vector<Vec3>& x, const std::vector<double>& diameters, double density) {
+dem::DemState with_flowing(dem::DemState state, const std::vector<Vec3>& x, const std::vector<double>& diameters,
+                           double density) {
   const dem::Grains base = std::move(state.grains);
   state.grains = {};
   for (std::size_t i = 0; i < x.size(); ++i) add_grain(state.grains, x[i], diameters[i], density, grain_species);
-  for (std::size_t i = 0; i < base.x.size(); ++i) add_grain(state.grains, base.x[i], base.diameter[i], density, base_species);
+  for (std::size_t i = 0; i < base.x.size(); ++i)
+    add_grain(state.grains, base.x[i], base.diameter[i], density, base_species);
   return state;
 }
 
@@ -106,14 +109,18 @@ double grain_count(const Chute& chute, double d) {
 
 void check_chute(const Chute& chute, const GrainMaterial& material) {
   const double d = material.diameter, largest = d * std::max(1 + material.size_spread, chute.base_size_ratio);
-  for (const auto& [key, value] : {std::pair{"scenario.length", chute.length}, std::pair{"scenario.width", chute.width}})
+  for (const auto& [key, value] :
+       {std::pair{"scenario.length", chute.length}, std::pair{"scenario.width", chute.width}})
     if (value < 2 * largest)
-      throw UnphysicalError(key, "a periodic box must be at least two diameters of the largest grain wide, or a grain meets its own image");
+      throw UnphysicalError(
+          key,
+          "a periodic box must be at least two diameters of the largest grain wide, or a grain meets its own image");
   if (grain_count(chute, d) < 1)
     throw UnphysicalError("scenario.fill_height", "no grains: length * width * fill_height / d^3 rounds to 0");
 }
 
-dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, const std::vector<Vec3>& base, std::uint64_t seed) {
+dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, const std::vector<Vec3>& base,
+                         std::uint64_t seed) {
   check_chute(chute, material);
   const double d = material.diameter;
   dem::DemState state;
@@ -122,16 +129,22 @@ dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, cons
   state.box = {{0, 0, 0}, {chute.length, chute.width, chute.fill_height}, {true, true, false}};
   add_base(state, base, chute.base_size_ratio * d, material.density, 1, 1, {});
 
-  const std::vector<double> diameters = draw_diameters(static_cast<std::int64_t>(grain_count(chute, d)), material, seed);
-  FillRegion region{.box = state.box, .solid_floor = chute.base_size_ratio == 0, .height = chute.fill_height, .growth = chute.insertion_growth * d};
+  const std::vector<double> diameters =
+      draw_diameters(static_cast<std::int64_t>(grain_count(chute, d)), material, seed);
+  FillRegion region{.box = state.box,
+                    .solid_floor = chute.base_size_ratio == 0,
+                    .height = chute.fill_height,
+                    .growth = chute.insertion_growth * d};
   const auto x = fill(region, diameters, base_spheres(state.grains), seed, random::Stream::fill);
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 
-dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch, const Bed& bed) {
+dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                          const Bed& bed) {
   const double d = material.diameter;
   if (column.length < 2.5 * column.radius)
-    throw UnphysicalError("scenario.length", "the plane must be wider than the column by some run-out, expected at least 2.5 radius");
+    throw UnphysicalError("scenario.length",
+                          "the plane must be wider than the column by some run-out, expected at least 2.5 radius");
   dem::DemState state = make_plane(column.length, column.base_size_ratio * d, material.density, patch);
   state.gravity = {0, 0, -column.gravity};
 
@@ -150,21 +163,26 @@ dem::DemState make_column(const Column& column, const GrainMaterial& material, c
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 
-dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch, std::uint64_t seed) {
+dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                        std::uint64_t seed) {
   const double d = material.diameter;
   if (heap.length < 2.5 * heap.radius)
     throw UnphysicalError("scenario.length", "the plane must be wider than the heap, expected at least 2.5 radius");
   dem::DemState state = make_plane(heap.length, heap.base_size_ratio * d, material.density, patch);
   state.gravity = {0, 0, -heap.gravity};
   const std::vector<double> diameters = draw_diameters(heap.grains, material, seed);
-  FillRegion region{.box = state.box, .floor = heap.drop_height, .solid_floor = heap.base_size_ratio == 0, .height = heap.radius,
-                    .growth = 1e-4 * d, .cylinder_radius = heap.radius};
+  FillRegion region{.box = state.box,
+                    .floor = heap.drop_height,
+                    .solid_floor = heap.base_size_ratio == 0,
+                    .height = heap.radius,
+                    .growth = 1e-4 * d,
+                    .cylinder_radius = heap.radius};
   const auto x = fill(region, diameters, base_spheres(state.grains), seed, random::Stream::fill);
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 
-dem::DemState make_singles(const Singles& singles, const std::vector<SingleGrain>& grains, const std::vector<SingleWall>& walls,
-                           const GrainMaterial& material) {
+dem::DemState make_singles(const Singles& singles, const std::vector<SingleGrain>& grains,
+                           const std::vector<SingleWall>& walls, const GrainMaterial& material) {
   dem::DemState state;
   state.gravity = singles.gravity;
   state.box.length = {1, 1, 1};
@@ -178,7 +196,8 @@ dem::DemState make_singles(const Singles& singles, const std::vector<SingleGrain
   for (const bool fixed : {false, true})
     for (const SingleGrain& g : grains)
       if (g.fixed == fixed) {
-        add_grain(state.grains, g.position, g.diameter.value_or(material.diameter), material.density, fixed ? base_species : grain_species);
+        add_grain(state.grains, g.position, g.diameter.value_or(material.diameter), material.density,
+                  fixed ? base_species : grain_species);
         if (!fixed) {
           state.grains.v.back() = g.velocity;
           state.grains.omega.back() = g.spin;

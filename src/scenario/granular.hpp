@@ -19,11 +19,12 @@ struct GrainMaterial {
   static constexpr std::string_view summary = "size and density of the flowing grains";
   double diameter = 1, density = 1.909859317102744, size_spread = 0;
   static constexpr auto fields() {
-    return std::tuple{field("diameter", "length", "mean diameter d", &GrainMaterial::diameter, positive()),
-                      field("density", "mass/length^3", "of the grains' material; the default 6/pi gives m = 1 at d = 1",
-                            &GrainMaterial::density, positive()),
-                      field("size_spread", "-", "diameters are uniform in d (1 -+ spread)", &GrainMaterial::size_spread,
-                            Range{.lo = 0, .hi = 0.9})};
+    return std::tuple{
+        field("diameter", "length", "mean diameter d", &GrainMaterial::diameter, positive()),
+        field("density", "mass/length^3", "of the grains' material; the default 6/pi gives m = 1 at d = 1",
+              &GrainMaterial::density, positive()),
+        field("size_spread", "-", "diameters are uniform in d (1 -+ spread)", &GrainMaterial::size_spread,
+              Range{.lo = 0, .hi = 0.9})};
   }
 };
 
@@ -35,14 +36,18 @@ struct Chute {
   // The paper's text says 0.01 d, which leaves a packing of 0.12; its "about 0.3" needs a hundredth of that.
   double insertion_growth = 1e-4;
   static constexpr auto fields() {
-    return std::tuple{
-        required("angle_deg", "deg", "inclination theta; gravity is g (sin theta, 0, -cos theta)", &Chute::angle_deg, Range{.lo = 0, .hi = 90, .hi_open = true}),
-        required("length", "length", "periodic, downslope", &Chute::length, positive()),
-        required("width", "length", "periodic, across", &Chute::width, positive()),
-        required("fill_height", "length", "H: length * width * H / d^3 grains are inserted", &Chute::fill_height, positive()),
-        field("base_size_ratio", "-", "lambda: diameter of base grains / d; 0 is a flat plane", &Chute::base_size_ratio, closed(0, 4)),
-        field("gravity", "length/time^2", "g", &Chute::gravity, positive()),
-        field("insertion_growth", "d", "what a rejected attempt adds to the insertion height; 1e-4 gives a packing of 0.3", &Chute::insertion_growth, positive())};
+    return std::tuple{required("angle_deg", "deg", "inclination theta; gravity is g (sin theta, 0, -cos theta)",
+                               &Chute::angle_deg, Range{.lo = 0, .hi = 90, .hi_open = true}),
+                      required("length", "length", "periodic, downslope", &Chute::length, positive()),
+                      required("width", "length", "periodic, across", &Chute::width, positive()),
+                      required("fill_height", "length", "H: length * width * H / d^3 grains are inserted",
+                               &Chute::fill_height, positive()),
+                      field("base_size_ratio", "-", "lambda: diameter of base grains / d; 0 is a flat plane",
+                            &Chute::base_size_ratio, closed(0, 4)),
+                      field("gravity", "length/time^2", "g", &Chute::gravity, positive()),
+                      field("insertion_growth", "d",
+                            "what a rejected attempt adds to the insertion height; 1e-4 gives a packing of 0.3",
+                            &Chute::insertion_growth, positive())};
   }
 };
 
@@ -54,8 +59,10 @@ struct Column {
   static constexpr auto fields() {
     return std::tuple{required("radius", "length", "r0 of the column", &Column::radius, positive()),
                       required("height", "length", "H0 of the column", &Column::height, positive()),
-                      required("length", "length", "side of the square plane, rounded up to whole patches of base", &Column::length, positive()),
-                      field("base_size_ratio", "-", "diameter of base grains / d; 0 is a flat plane", &Column::base_size_ratio, closed(0, 4)),
+                      required("length", "length", "side of the square plane, rounded up to whole patches of base",
+                               &Column::length, positive()),
+                      field("base_size_ratio", "-", "diameter of base grains / d; 0 is a flat plane",
+                            &Column::base_size_ratio, closed(0, 4)),
                       field("gravity", "length/time^2", "g", &Column::gravity, positive())};
   }
 };
@@ -67,12 +74,15 @@ struct Heap {
   std::int64_t grains = 1000;
   double radius = 0, length = 0, drop_height = 0, base_size_ratio = 1, gravity = 9.81;
   static constexpr auto fields() {
-    return std::tuple{required("grains", "-", "how many", &Heap::grains, at_least(1)),
-                      required("radius", "length", "of the cylinder the grains start in", &Heap::radius, positive()),
-                      required("length", "length", "side of the square plane, rounded up to whole patches of base", &Heap::length, positive()),
-                      field("drop_height", "length", "lowest start above the plane", &Heap::drop_height, non_negative()),
-                      field("base_size_ratio", "-", "diameter of base grains / d; 0 is a flat plane", &Heap::base_size_ratio, closed(0, 4)),
-                      field("gravity", "length/time^2", "g", &Heap::gravity, positive())};
+    return std::tuple{
+        required("grains", "-", "how many", &Heap::grains, at_least(1)),
+        required("radius", "length", "of the cylinder the grains start in", &Heap::radius, positive()),
+        required("length", "length", "side of the square plane, rounded up to whole patches of base", &Heap::length,
+                 positive()),
+        field("drop_height", "length", "lowest start above the plane", &Heap::drop_height, non_negative()),
+        field("base_size_ratio", "-", "diameter of base grains / d; 0 is a flat plane", &Heap::base_size_ratio,
+              closed(0, 4)),
+        field("gravity", "length/time^2", "g", &Heap::gravity, positive())};
   }
 };
 
@@ -105,23 +115,28 @@ struct Singles {
   Vec3 gravity;
   std::vector<double> period;
   static constexpr auto fields() {
-    return std::tuple{field("gravity", "length/time^2", "vector", &Singles::gravity),
-                      field("period", "length", "periods in x, y, z; 0 is not periodic", &Singles::period, non_negative())};
+    return std::tuple{
+        field("gravity", "length/time^2", "vector", &Singles::gravity),
+        field("period", "length", "periods in x, y, z; 0 is not periodic", &Singles::period, non_negative())};
   }
 };
 
 // What a bed must be like for a scenario: the base grains, and the column. Both empty beds for a flat plane.
 BedRecipe base_recipe(double length, double width, double base_diameter, std::uint64_t seed);
 BedRecipe column_recipe(const Column& column, const GrainMaterial& material, std::uint64_t seed);
-inline constexpr double base_patch = 10;  // side of the patch that tiles the plane of a column or heap, in base diameters
+inline constexpr double base_patch =
+    10;  // side of the patch that tiles the plane of a column or heap, in base diameters
 
 // Builders. `base`: centres of base grains in their own diameters (cut_base), ignored for base_size_ratio = 0.
 // Throw UnphysicalError for an empty fill or a box too small for its grains.
 void check_chute(const Chute& chute, const GrainMaterial& material);
-dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, const std::vector<Vec3>& base, std::uint64_t seed);
-dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch, const Bed& bed);
-dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch, std::uint64_t seed);
-dem::DemState make_singles(const Singles& singles, const std::vector<SingleGrain>& grains, const std::vector<SingleWall>& walls,
-                           const GrainMaterial& material);
+dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, const std::vector<Vec3>& base,
+                         std::uint64_t seed);
+dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                          const Bed& bed);
+dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                        std::uint64_t seed);
+dem::DemState make_singles(const Singles& singles, const std::vector<SingleGrain>& grains,
+                           const std::vector<SingleWall>& walls, const GrainMaterial& material);
 
 }  // namespace bagnold::scenario

@@ -9,7 +9,9 @@ namespace bagnold::scenario {
 namespace {
 
 // Number of spacings in a length, at least one.
-std::int64_t cells_in(double length, double spacing) { return std::max<std::int64_t>(1, std::llround(length / spacing)); }
+std::int64_t cells_in(double length, double spacing) {
+  return std::max<std::int64_t>(1, std::llround(length / spacing));
+}
 
 }  // namespace
 
@@ -41,9 +43,7 @@ sph::Particles make_particles(const InclinedPlane& plane, const sph::Model& mode
   return p;
 }
 
-double PlaneFlow::velocity(double z) const {
-  return u_surface * (1 - std::pow(std::max(0.0, 1 - z / height), 1.5));
-}
+double PlaneFlow::velocity(double z) const { return u_surface * (1 - std::pow(std::max(0.0, 1 - z / height), 1.5)); }
 
 double PlaneFlow::pressure(double z, double grain_density) const {
   return phi * grain_density * 9.81 * std::cos(angle_deg * M_PI / 180) * std::max(0.0, height - z);
@@ -58,7 +58,8 @@ PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model) {
         double hi = 1;
         while (rheology.mu(hi) < tangent) {
           if (hi > 1e6)
-            throw UnphysicalError("scenario.angle_deg", "the slope is steeper than the largest friction: the flow never becomes steady");
+            throw UnphysicalError("scenario.angle_deg",
+                                  "the slope is steeper than the largest friction: the flow never becomes steady");
           hi *= 2;
         }
         double lo = 0;
@@ -67,12 +68,13 @@ PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model) {
         flow.phi = dilatancy.phi(flow.i);
       },
       model.material.rheology, model.material.dilatancy);
-  flow.u_surface = 2 * flow.i / (3 * model.material.grain_diameter) * std::sqrt(flow.phi * 9.81 * std::cos(theta)) * std::pow(plane.height, 1.5);
+  flow.u_surface = 2 * flow.i / (3 * model.material.grain_diameter) * std::sqrt(flow.phi * 9.81 * std::cos(theta)) *
+                   std::pow(plane.height, 1.5);
   return flow;
 }
 
-std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, const sph::Model& model, double height, int cells,
-                                                const std::vector<double>& times) {
+std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, const sph::Model& model, double height,
+                                                int cells, const std::vector<double>& times) {
   const PlaneFlow steady = steady_flow(plane, model);
   const double theta = plane.angle_deg * M_PI / 180, rho_s = model.grains().grain_density, rho = steady.phi * rho_s,
                dz = height / cells, d = model.material.grain_diameter;
@@ -92,12 +94,14 @@ std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, cons
           const double a = d * std::sqrt(rho_s / p);
           std::visit(
               [&](const auto& rheology, const auto& regularisation) {
-                eta[k] = regularisation.viscosity(rheology.static_friction() * p, p * a * rheology.excess()(gamma * a), gamma);
+                eta[k] = regularisation.viscosity(rheology.static_friction() * p, p * a * rheology.excess()(gamma * a),
+                                                  gamma);
               },
               model.material.rheology, model.material.regularisation);
         }
         for (std::size_t k = 0; k < n; ++k) {
-          const double below = eta[k] * dt / (rho * dz * dz) * (k == 0 ? 2 : 1), above = eta[k + 1] * dt / (rho * dz * dz);
+          const double below = eta[k] * dt / (rho * dz * dz) * (k == 0 ? 2 : 1),
+                       above = eta[k + 1] * dt / (rho * dz * dz);
           lower[k] = k == 0 ? 0 : -below;
           upper[k] = -above;
           diagonal[k] = 1 + below + above;

@@ -27,7 +27,7 @@ sph::Particles make_particles(const InclinedPlane& plane, const sph::Model& mode
 
 // Steady uniform flow of the mu(i) law                                          Minatti & Paris 2015, eq. 56
 struct PlaneFlow {
-  double i = 0, phi = 0;       // inertial number and volume fraction, uniform over depth; 0 and phi_max when at rest
+  double i = 0, phi = 0;  // inertial number and volume fraction, uniform over depth; 0 and phi_max when at rest
   double height = 0, angle_deg = 0;
   double u_surface = 0;
   double velocity(double z) const;
@@ -38,7 +38,7 @@ PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model);
 
 // Flow from rest: rho du/dt = rho g sin(theta) + d tau/dz on `cells` cells, backward Euler, for the thickness `height`.
 // Returns u at the cell centres at each of `times` (ascending).
-std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, const sph::Model& model, double height, int cells,
-                                                const std::vector<double>& times);
+std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, const sph::Model& model, double height,
+                                                int cells, const std::vector<double>& times);
 
 }  // namespace bagnold::scenario

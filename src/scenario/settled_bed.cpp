@@ -13,14 +13,19 @@
 namespace bagnold::scenario {
 
 Bed settle_bed(const BedRecipe& recipe) {
-  const Chute box{.angle_deg = 0, .length = recipe.length, .width = recipe.width,
+  const Chute box{.angle_deg = 0,
+                  .length = recipe.length,
+                  .width = recipe.width,
                   // Grains at rest fill about 0.58 of the space, a cubic lattice of one grain per d^3 pi/6 of it.
-                  .fill_height = recipe.thickness * 0.58 * 6 / std::numbers::pi, .base_size_ratio = 0};
+                  .fill_height = recipe.thickness * 0.58 * 6 / std::numbers::pi,
+                  .base_size_ratio = 0};
   const GrainMaterial material{.size_spread = recipe.size_spread};
   dem::DemState state = make_chute(box, material, {}, static_cast<std::uint64_t>(recipe.seed));
-  const dem::PairParameters pair{laws::Linear{.collision_time = recipe.collision_time, .restitution = recipe.restitution},
-                                 laws::LinearHistory{.friction = recipe.friction}, laws::NoRollingResistance{}};
-  const dem::ContactLaws laws = dem::compile(dem::uniform_model({"grain", "base"}, pair), dem::mean_pair_mass(state.grains));
+  const dem::PairParameters pair{
+      laws::Linear{.collision_time = recipe.collision_time, .restitution = recipe.restitution},
+      laws::LinearHistory{.friction = recipe.friction}, laws::NoRollingResistance{}};
+  const dem::ContactLaws laws =
+      dem::compile(dem::uniform_model({"grain", "base"}, pair), dem::mean_pair_mass(state.grains));
   state.dt = recipe.collision_time / 20;  // what matters is where grains come to rest, not how
   dem::prepare(state, laws);
 
@@ -31,7 +36,8 @@ Bed settle_bed(const BedRecipe& recipe) {
     const dem::Energies e = dem::energies(state, laws);
     if (state.time() > 10 && e.kinetic() < 1e-5 * e.elastic()) return {state.grains.x, state.grains.diameter};
   }
-  throw NumericalError(fmt::format("the bed of {} grains did not come to rest within t = {:g}", state.grains.flowing, limit));
+  throw NumericalError(
+      fmt::format("the bed of {} grains did not come to rest within t = {:g}", state.grains.flowing, limit));
 }
 
 std::vector<Vec3> cut_base(const Bed& bed) {

@@ -13,24 +13,28 @@ namespace bagnold::scenario {
 
 // Lengths in mean diameters, times in sqrt(d/g). The bed depends on these numbers alone, so it can be kept and reused.
 struct BedRecipe {
-  double length = 20, width = 10;   // periodic footprint
-  double thickness = 12;            // of the settled bed, about
-  double size_spread = 0;           // diameters uniform in 1 -+ spread
+  double length = 20, width = 10;  // periodic footprint
+  double thickness = 12;           // of the settled bed, about
+  double size_spread = 0;          // diameters uniform in 1 -+ spread
   double friction = 0.5, restitution = 0.88;
   // Grains here are softer than those that flow: at rest the overlaps are still below 1e-3 diameters, and the bed
   // settles in a tenth of the steps.
   double collision_time = 0.02;
   std::int64_t seed = 1;
   static constexpr auto fields() {
-    return std::tuple{field("length", "d", "", &BedRecipe::length), field("width", "d", "", &BedRecipe::width),
-                      field("thickness", "d", "", &BedRecipe::thickness), field("size_spread", "", "", &BedRecipe::size_spread),
-                      field("friction", "", "", &BedRecipe::friction), field("restitution", "", "", &BedRecipe::restitution),
-                      field("collision_time", "", "", &BedRecipe::collision_time), field("seed", "", "", &BedRecipe::seed)};
+    return std::tuple{field("length", "d", "", &BedRecipe::length),
+                      field("width", "d", "", &BedRecipe::width),
+                      field("thickness", "d", "", &BedRecipe::thickness),
+                      field("size_spread", "", "", &BedRecipe::size_spread),
+                      field("friction", "", "", &BedRecipe::friction),
+                      field("restitution", "", "", &BedRecipe::restitution),
+                      field("collision_time", "", "", &BedRecipe::collision_time),
+                      field("seed", "", "", &BedRecipe::seed)};
   }
 };
 
 struct Bed {
-  std::vector<Vec3> x;            // centres, bottom plane at z = 0
+  std::vector<Vec3> x;  // centres, bottom plane at z = 0
   std::vector<double> diameter;
 };
 

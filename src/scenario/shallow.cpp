@@ -31,8 +31,10 @@ double cell_mean(const shallow::Grid& g, int i, int j, const std::function<doubl
 void set_up(const Incline& s, shallow::Definition& d) {
   grid_of(s.length, s.width, s.cells, s.cells_across, s.x0, s.y0, d.grid);
   const double theta = radians(s.angle_deg), turn = radians(s.direction_deg);
-  d.gravity = {.normal = s.gravity * std::cos(theta), .slope_x = std::tan(theta) * std::cos(turn),
-               .slope_y = std::tan(theta) * std::sin(turn), .g = s.gravity};
+  d.gravity = {.normal = s.gravity * std::cos(theta),
+               .slope_x = std::tan(theta) * std::cos(turn),
+               .slope_y = std::tan(theta) * std::sin(turn),
+               .g = s.gravity};
 }
 
 void set_up(const RunOut& s, shallow::Definition& d) {

@@ -16,9 +16,10 @@ constexpr int most_attempts = 30;
 [[noreturn]] void give_up(const Solver& s, const State& state, const StageResult& r, double dt) {
   const Grid& g = s.setup.grid;
   const std::int64_t row = r.bad / g.stride() - halo, column = r.bad % g.stride() - halo;
-  throw NumericalError(fmt::format("shallow layer: mass or momentum lost its meaning near cell ({}, {}) at t = {:.6g}, "
-                                   "step {}, dt = {:.3g}, in spite of {} smaller steps",
-                                   column, row, state.time, state.step, dt, most_attempts));
+  throw NumericalError(
+      fmt::format("shallow layer: mass or momentum lost its meaning near cell ({}, {}) at t = {:.6g}, "
+                  "step {}, dt = {:.3g}, in spite of {} smaller steps",
+                  column, row, state.time, state.step, dt, most_attempts));
 }
 
 void book_crossings(const Solver& s, State& state, double dt) {

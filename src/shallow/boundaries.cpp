@@ -82,10 +82,13 @@ void fill_bed_ghosts(const Solver& s, std::vector<double>& bed) {
     for (std::size_t k = 0; k < s.ghosts[side].size(); ++k) {
       const Ghost& g = s.ghosts[side][k];
       const auto inward = static_cast<std::ptrdiff_t>(g.edge) - (k % 2 == 0 ? static_cast<std::ptrdiff_t>(g.to) : 0);
-      if (kind == BoundaryKind::wall) bed[g.to] = bed[g.mirror];
-      else if (kind == BoundaryKind::periodic) bed[g.to] = bed[g.across];
+      if (kind == BoundaryKind::wall)
+        bed[g.to] = bed[g.mirror];
+      else if (kind == BoundaryKind::periodic)
+        bed[g.to] = bed[g.across];
       else if (k % 2 == 0) {  // open sides: the slope goes on
-        const double edge = bed[g.edge], next = bed[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(g.edge) + inward)];
+        const double edge = bed[g.edge],
+                     next = bed[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(g.edge) + inward)];
         bed[g.to] = edge - (next - edge) * beyond[0];
         bed[s.ghosts[side][k + 1].to] = edge - (next - edge) * beyond[1];
       }

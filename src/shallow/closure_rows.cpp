@@ -16,9 +16,8 @@ constexpr int density_iterations = 4;
 
 // Friction angle, density and stress ratio of `n` cells that hold `D` > 0 and run at speeds s = F sqrt(h).
 template <class Law>
-void measured_row(const PreparedClosure& p, int n, const double* __restrict D,
-                  const double* __restrict s, double* __restrict h, double* __restrict mu, double* __restrict rho,
-                  double* __restrict K) {
+void measured_row(const PreparedClosure& p, int n, const double* __restrict D, const double* __restrict s,
+                  double* __restrict h, double* __restrict mu, double* __restrict rho, double* __restrict K) {
   const typename Law::Prepared law = prepared_law<Law>(p).dynamic;
   const Polynomial rho_of_mu = p.rho_of_mu, K_of_mu = p.K_of_mu;
   const double inverse_rho = 1 / p.rho;
@@ -43,7 +42,8 @@ void measured_row(const PreparedClosure& p, int n, const double* __restrict D,
   }
 }
 
-void shape_row(const PreparedClosure& p, int n, const double* __restrict h, const double* __restrict mu, double* __restrict alpha) {
+void shape_row(const PreparedClosure& p, int n, const double* __restrict h, const double* __restrict mu,
+               double* __restrict alpha) {
   const laws::StrainModelShapeFactor strain = p.strain;
   const double mu1 = p.strain_mu1, mu2 = p.strain_mu2, lo = p.mu_lo, hi = p.mu_hi;
 #pragma omp simd
@@ -101,10 +101,10 @@ template <class Law, bool terrain, bool second>
 void friction_stage(const PreparedClosure& p, const FrictionArgs& a) {
   const auto& law = prepared_law<Law>(p);
   const double dry = p.dry_density_depth, dt = a.dt, g = p.normal;
-  const double *__restrict h = a.h, *__restrict u = a.u, *__restrict v = a.v, *__restrict hold = a.hold;
-  const double *__restrict D_new = a.D_new, *__restrict Msx = a.Msx, *__restrict Msy = a.Msy;
+  const double* __restrict h = a.h, * __restrict u = a.u, * __restrict v = a.v, * __restrict hold = a.hold;
+  const double* __restrict D_new = a.D_new, * __restrict Msx = a.Msx, * __restrict Msy = a.Msy;
   const double *Mx_old = a.Mx_old, *My_old = a.My_old;
-  double *__restrict share = a.share, *__restrict Mx = a.Mx, *__restrict My = a.My;
+  double* __restrict share = a.share, * __restrict Mx = a.Mx, * __restrict My = a.My;
   const double *bx = a.bx, *by = a.by, *slope_cosine = a.c, *bend = a.bend;
   const int n = a.n;
   const auto norm = [&](double x, double y, int k) {
@@ -160,8 +160,9 @@ LawKernels kernels_of(bool constant, bool terrain) {
 }  // namespace
 
 LawKernels choose_kernels(const closure::ClosureSet& set, bool terrain) {
-  return std::visit([&](const auto& law) { return kernels_of<std::decay_t<decltype(law)>>(set.is_constant(), terrain); },
-                    set.friction);
+  return std::visit(
+      [&](const auto& law) { return kernels_of<std::decay_t<decltype(law)>>(set.is_constant(), terrain); },
+      set.friction);
 }
 
 }  // namespace bagnold::shallow

@@ -56,9 +56,9 @@ struct Scheme {
 struct Definition {
   Grid grid;
   Gravity gravity;
-  bool terrain = false;             // metric and curvature of the bed, see Gravity
-  std::vector<double> bed;          // padded; empty: flat
-  std::vector<double> width;        // 1D channel: width at the nx + 1 faces; empty: 1
+  bool terrain = false;       // metric and curvature of the bed, see Gravity
+  std::vector<double> bed;    // padded; empty: flat
+  std::vector<double> width;  // 1D channel: width at the nx + 1 faces; empty: 1
   std::array<Boundary, 4> boundary;
   Scheme scheme;
   closure::ClosureSet closure;

@@ -78,7 +78,8 @@ void edge_row(int begin, int end, bool second_order, const CellRow& before, cons
 // Rise of the surface K h + b across each face, less the fall of the chart. A dry cell takes from a higher neighbour
 // but gives nothing to a lower one.
 template <Geometry G>
-void drop_row(int begin, int end, const CellRow& before, const CellRow& after, int shift, const double* fall, FaceRow& out) {
+void drop_row(int begin, int end, const CellRow& before, const CellRow& after, int shift, const double* fall,
+              FaceRow& out) {
   const double *ha = after.h + shift, *ba = after.b + shift, *Ka = after.K + shift, *ca = after.c + shift;
 #pragma omp simd
   for (int f = begin; f < end; ++f) {
@@ -107,7 +108,8 @@ void face_row(const FaceArgs& a, FaceRow& out) {
   const double *hA = A.h + o, *KA = A.K + o, *rhoA = A.rho + o, *alphaA = A.alpha + o, *slopeA = A.slope + o,
                *holdA = A.hold + o, *restA = A.rest + o, *bA = A.b + o, *cA = A.c + o;
   const double *tangent_B = a.along_y ? B.gx : B.gy, *tangent_A = (a.along_y ? A.gx : A.gy) + o;
-  const double *n_B = a.along_y ? B.by : B.bx, *n_A = (a.along_y ? A.by : A.bx) + o;  // terrain: bed slope along the normal
+  const double *n_B = a.along_y ? B.by : B.bx,
+               *n_A = (a.along_y ? A.by : A.bx) + o;  // terrain: bed slope along the normal
   const double *s_B = a.along_y ? B.bx : B.by, *s_A = (a.along_y ? A.bx : A.by) + o;
   const double g = a.normal_g, inv_d = a.inv_d;
   constexpr double round_off = 1e-15;
@@ -132,7 +134,8 @@ void face_row(const FaceArgs& a, FaceRow& out) {
       const double eta_l = psi_l + b_plus[f], eta_r = psi_r + b_minus[f];
       const double step = smaller(larger(b_plus[f], b_minus[f]), smaller(eta_l, eta_r));
       const double inv = 1 / (K * cf);
-      const double h_l = larger(0, smaller(eta_l - step, psi_l)) * inv, h_r = larger(0, smaller(eta_r - step, psi_r)) * inv;
+      const double h_l = larger(0, smaller(eta_l - step, psi_l)) * inv,
+                   h_r = larger(0, smaller(eta_r - step, psi_r)) * inv;
       extra_left = g * metric_b * face.rho * (0.5 * (left.h + h_l)) * (step - b_plus[f]);
       extra_right = g * metric_a * face.rho * (0.5 * (right.h + h_r)) * (step - b_minus[f]);
       if constexpr (G == Geometry::terrain) {  // each cell sees the pressure with its own metric
@@ -166,7 +169,7 @@ void face_row(const FaceArgs& a, FaceRow& out) {
   }
 }
 
-#define BAGNOLD_INSTANTIATE(G)                                                                                   \
+#define BAGNOLD_INSTANTIATE(G)                                                                                    \
   template void edge_row<G>(int, int, bool, const CellRow&, const CellRow&, const CellRow&, int, bool, EdgeRow&); \
   template void drop_row<G>(int, int, const CellRow&, const CellRow&, int, const double*, FaceRow&);              \
   template void face_row<G>(const FaceArgs&, FaceRow&);

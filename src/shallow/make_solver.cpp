@@ -14,16 +14,20 @@ void require(bool fine, const char* key, const std::string& what) {
 
 void check(const Definition& s) {
   const Grid& g = s.grid;
-  require(g.nx >= 2 && g.ny >= 1 && g.ny != 2, "grid", fmt::format("{} x {} cells; need at least 3 in each direction that has more than one", g.nx, g.ny));
+  require(g.nx >= 2 && g.ny >= 1 && g.ny != 2, "grid",
+          fmt::format("{} x {} cells; need at least 3 in each direction that has more than one", g.nx, g.ny));
   require(g.dx > 0 && g.dy > 0, "grid", "cells must have a positive size");
   require(s.gravity.normal > 0 && s.gravity.g > 0, "gravity", "the component normal to the bed must be positive");
   require(s.scheme.cfl > 0 && s.scheme.cfl <= 0.5, "scheme.cfl", fmt::format("{} is outside (0, 0.5]", s.scheme.cfl));
   require(s.scheme.dry_depth >= 0 && s.scheme.tip_depth >= 0, "scheme", "depths must not be negative");
-  require(s.scheme.tile_nx >= 4 && s.scheme.tile_nx <= max_tile && s.scheme.tile_ny >= 4, "scheme.tile", "tiles must be 4 to 124 cells wide and at least 4 high");
-  require(s.bed.empty() || static_cast<std::int64_t>(s.bed.size()) == g.padded(), "bed", "size does not match the grid");
+  require(s.scheme.tile_nx >= 4 && s.scheme.tile_nx <= max_tile && s.scheme.tile_ny >= 4, "scheme.tile",
+          "tiles must be 4 to 124 cells wide and at least 4 high");
+  require(s.bed.empty() || static_cast<std::int64_t>(s.bed.size()) == g.padded(), "bed",
+          "size does not match the grid");
   require(!s.terrain || !s.bed.empty(), "bed", "terrain needs an elevation");
   for (double b : s.bed) require(std::isfinite(b), "bed", "elevation is not a number");
-  require(s.width.empty() || (!g.two_d() && static_cast<int>(s.width.size()) == g.nx + 1), "width", "a channel width needs a one-dimensional grid and nx + 1 values");
+  require(s.width.empty() || (!g.two_d() && static_cast<int>(s.width.size()) == g.nx + 1), "width",
+          "a channel width needs a one-dimensional grid and nx + 1 values");
   for (double w : s.width) require(w > 0, "width", "must be positive");
   for (std::size_t pair : {std::size_t{0}, std::size_t{2}})
     require((s.boundary[pair].kind == BoundaryKind::periodic) == (s.boundary[pair + 1].kind == BoundaryKind::periodic),
@@ -31,7 +35,8 @@ void check(const Definition& s) {
   for (const Boundary& b : s.boundary)
     if (b.kind == BoundaryKind::inflow) {
       const Hydrograph& q = b.inflow;
-      require(!q.t.empty() && q.h.size() == q.t.size() && q.u.size() == q.t.size(), "boundary.inflow", "needs as many thicknesses and velocities as times");
+      require(!q.t.empty() && q.h.size() == q.t.size() && q.u.size() == q.t.size(), "boundary.inflow",
+              "needs as many thicknesses and velocities as times");
       for (std::size_t k = 0; k < q.t.size(); ++k) {
         require(k == 0 || q.t[k] > q.t[k - 1], "boundary.inflow", "times must increase");
         require(q.h[k] >= 0, "boundary.inflow", "thickness must not be negative");
@@ -88,12 +93,14 @@ Solver make_solver(Definition setup) {
   if (s.setup.terrain) differentiate_bed(s);
 
   const auto columns = static_cast<std::size_t>(g.stride());
-  s.width_face.assign(columns + row_size, 1.0);   // face f of a tile at i0 is entry i0 + f; faces halo - 1 .. nx + 1 are real
+  s.width_face.assign(columns + row_size,
+                      1.0);  // face f of a tile at i0 is entry i0 + f; faces halo - 1 .. nx + 1 are real
   s.inverse_width.assign(columns + row_size, 1.0);
   if (!s.setup.width.empty()) {
     const auto& w = s.setup.width;
     for (int f = 0; f < static_cast<int>(columns); ++f)
-      s.width_face[static_cast<std::size_t>(f)] = w[static_cast<std::size_t>(std::min(std::max(f - (halo - 1), 0), g.nx))];
+      s.width_face[static_cast<std::size_t>(f)] =
+          w[static_cast<std::size_t>(std::min(std::max(f - (halo - 1), 0), g.nx))];
     for (std::size_t k = 1; k < columns; ++k) s.inverse_width[k] = 2 / (s.width_face[k - 1] + s.width_face[k]);
   }
   s.fall_x.assign(columns + row_size, s.setup.gravity.slope_x * g.dx);

@@ -9,9 +9,12 @@ double degrees(double mu) { return std::atan(mu) * 180 / std::numbers::pi; }
 
 template <class F>
 auto with_friction(const closure::ClosureSet& set, double g, F&& f) {
-  return std::visit([&](const auto& law) { return f(laws::BasalFriction(law.prepared(g), set.static_branch)); }, set.friction);
+  return std::visit([&](const auto& law) { return f(laws::BasalFriction(law.prepared(g), set.static_branch)); },
+                    set.friction);
 }
-double clamped(double theta, const closure::Validity& v) { return std::min(std::max(theta, v.theta_lo_deg), v.theta_hi_deg); }
+double clamped(double theta, const closure::Validity& v) {
+  return std::min(std::max(theta, v.theta_lo_deg), v.theta_hi_deg);
+}
 }  // namespace
 
 Polynomial Polynomial::fit(double lo, double hi, const std::function<double(double)>& f) {
@@ -46,14 +49,20 @@ PreparedClosure prepare(const Definition& setup) {
   PreparedClosure p;
   p.set = setup.closure;
   p.g = setup.gravity.g;
-  p.friction = std::visit([&](const auto& law) -> AnyFriction { return laws::BasalFriction(law.prepared(p.g), p.set.static_branch); }, p.set.friction);
+  p.friction = std::visit(
+      [&](const auto& law) -> AnyFriction { return laws::BasalFriction(law.prepared(p.g), p.set.static_branch); },
+      p.set.friction);
   p.normal = setup.gravity.normal;
   const closure::Validity& v = p.set.validity;
-  const double lo = std::tan(v.theta_lo_deg * std::numbers::pi / 180), hi = std::tan(v.theta_hi_deg * std::numbers::pi / 180);
+  const double lo = std::tan(v.theta_lo_deg * std::numbers::pi / 180),
+               hi = std::tan(v.theta_hi_deg * std::numbers::pi / 180);
   const auto density = [&](double mu) {
-    return p.set.grain_density * std::visit([&](const auto& l) { return l.volume_fraction(degrees(mu)); }, p.set.density);
+    return p.set.grain_density *
+           std::visit([&](const auto& l) { return l.volume_fraction(degrees(mu)); }, p.set.density);
   };
-  const auto ratio = [&](double mu) { return std::visit([&](const auto& l) { return l.ratio(degrees(mu)); }, p.set.stress_ratio); };
+  const auto ratio = [&](double mu) {
+    return std::visit([&](const auto& l) { return l.ratio(degrees(mu)); }, p.set.stress_ratio);
+  };
   if (!p.set.is_constant()) {
     p.mu_lo = lo;
     p.mu_hi = hi;

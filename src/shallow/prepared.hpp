@@ -20,7 +20,9 @@ struct Polynomial {
     double s = (x - middle) * inverse_half_width;
     s = 0.5 * (std::abs(s + 1) - std::abs(s - 1));  // clamped to [-1, 1] without a branch
     double y = coefficient[degree];
-    unrolled<degree>([&](int k) __attribute__((always_inline)) { y = y * s + coefficient[static_cast<std::size_t>(degree - 1 - k)]; });
+    unrolled<degree>([&](int k) __attribute__((always_inline)) {
+      y = y * s + coefficient[static_cast<std::size_t>(degree - 1 - k)];
+    });
     return y;
   }
 };
@@ -37,12 +39,12 @@ using AnyFriction = PreparedLaws<laws::FrictionLaws>::Any;
 struct PreparedClosure {
   closure::ClosureSet set;
   AnyFriction friction = laws::BasalFriction(laws::Coulomb{}.prepared(1), laws::StaticBranch{});
-  double g = 1, normal = 1;                 // full and normal gravity
-  double dry_density_depth = 0;             // D below which a cell is dry
+  double g = 1, normal = 1;      // full and normal gravity
+  double dry_density_depth = 0;  // D below which a cell is dry
   double inverse_tip_depth = 1e300;
-  double rho = 1, K = 1, alpha = 1;         // constant closures; else representative values
-  Polynomial rho_of_mu, K_of_mu;            // functions of mu within the validity range
-  double mu_lo = 0, mu_hi = 1e300;          // its ends
+  double rho = 1, K = 1, alpha = 1;  // constant closures; else representative values
+  Polynomial rho_of_mu, K_of_mu;     // functions of mu within the validity range
+  double mu_lo = 0, mu_hi = 1e300;   // its ends
   bool alpha_varies = false;
   laws::StrainModelShapeFactor strain;
   double strain_mu1 = 0, strain_mu2 = 0;
@@ -59,7 +61,7 @@ PreparedClosure prepare(const Definition& setup);
 struct CellClosure {
   double h, mu, rho, K, alpha, slope;
 };
-CellClosure closure_at(const PreparedClosure& p, double h, double speed);      // h given
+CellClosure closure_at(const PreparedClosure& p, double h, double speed);       // h given
 CellClosure closure_of_cell(const PreparedClosure& p, double D, double speed);  // rho(h, u) h = D given
 // Friction with static branch of the chosen law.
 double basal_friction(const closure::ClosureSet& set, double g, double h, double froude);

@@ -9,9 +9,9 @@
 namespace bagnold::shallow {
 
 struct StageResult {
-  double rate = 0;          // largest sum over directions of |speed|/d, 1/time: dt rate <= 1/2 keeps D >= 0
-  std::int64_t bad = -1;    // padded index of a column that became negative or not a number, else -1
-  std::int64_t wet = 0;     // cells
+  double rate = 0;        // largest sum over directions of |speed|/d, 1/time: dt rate <= 1/2 keeps D >= 0
+  std::int64_t bad = -1;  // padded index of a column that became negative or not a number, else -1
+  std::int64_t wet = 0;   // cells
 };
 
 // Where a ghost cell takes its value from: its mirror image, the edge cell of its row, or the cell across the domain.
@@ -27,14 +27,14 @@ struct Solver {
   LawKernels kernels;
   Geometry geometry = Geometry::flat;
   std::vector<double> bed, bed_x, bed_y, bed_xx, bed_xy, bed_yy, cosine, area;  // padded; area = 1/cosine
-  std::vector<double> width_face, inverse_width;                          // by column, with halo; 1 unless a channel
-  std::vector<double> fall_x;                                             // fall of the chart over each x face, 0 at walls
+  std::vector<double> width_face, inverse_width;  // by column, with halo; 1 unless a channel
+  std::vector<double> fall_x;                     // fall of the chart over each x face, 0 at walls
   double fall_y = 0;
-  Conserved predicted, next;                                              // stage 1; result (before: fluxes of stage 1)
-  std::array<std::vector<Ghost>, 4> ghosts;                               // by Side
+  Conserved predicted, next;                 // stage 1; result (before: fluxes of stage 1)
+  std::array<std::vector<Ghost>, 4> ghosts;  // by Side
   int tiles_x = 1, tiles_y = 1;
-  std::vector<int> active;                                                // tiles to compute
-  std::vector<double> crossing[2][4];                                     // boundary mass flux of each stage
+  std::vector<int> active;             // tiles to compute
+  std::vector<double> crossing[2][4];  // boundary mass flux of each stage
   std::vector<StageResult> tile_results;
   std::vector<std::uint8_t> tile_wanted;
 };
@@ -51,7 +51,8 @@ struct CellView {
 };
 CellView view_cell(const Solver& solver, const State& state, int i, int j);
 // h, u, v of one row of the grid, with the kernels of the solver.
-void view_row(const Solver& solver, const State& state, int j, std::vector<double>& h, std::vector<double>& u, std::vector<double>& v);
+void view_row(const Solver& solver, const State& state, int j, std::vector<double>& h, std::vector<double>& u,
+              std::vector<double>& v);
 
 // Call after the state has been set or restored: finds the wet tiles.
 void refresh(Solver& solver, State& state);
@@ -59,9 +60,9 @@ void refresh(Solver& solver, State& state);
 void advance_one_step(Solver& solver, State& state);
 void advance(Solver& solver, State& state, double until);  // steps until time >= until; never shortens a step
 
-double total_mass(const Solver& solver, const State& state);      // compensated sum over all cells, in order
-double mass_crossed(const Solver& solver, const State& state);    // that left through the boundaries so far (out > 0)
-bool at_rest(const Solver& solver, const State& state);           // every cell exactly at rest
+double total_mass(const Solver& solver, const State& state);    // compensated sum over all cells, in order
+double mass_crossed(const Solver& solver, const State& state);  // that left through the boundaries so far (out > 0)
+bool at_rest(const Solver& solver, const State& state);         // every cell exactly at rest
 
 // ---- used by advance_one_step ------------------------------------------------------------------------------------
 StageResult stage(Solver& solver, const State& state, int number, double dt);

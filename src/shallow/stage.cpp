@@ -44,7 +44,14 @@ template <Geometry G>
 class Sweep {
  public:
   Sweep(Solver& s, const State& state, int number, double dt, Scratch& w, const Tile& t)
-      : s_(s), g_(s.setup.grid), number_(number), dt_(dt), w_(w), t_(t), n_(t.nx + 2 * halo), start_(state.now),
+      : s_(s),
+        g_(s.setup.grid),
+        number_(number),
+        dt_(dt),
+        w_(w),
+        t_(t),
+        n_(t.nx + 2 * halo),
+        start_(state.now),
         from_(number == 1 ? state.now : s.predicted) {}
 
   void run() {
@@ -67,7 +74,7 @@ class Sweep {
 
  private:
   CellRow& cell(int j) { return w_.cells[j & 3]; }
-  FaceRow& below(int j) { return w_.y_faces[j & 1]; }     // faces between rows j - 1 and j
+  FaceRow& below(int j) { return w_.y_faces[j & 1]; }  // faces between rows j - 1 and j
 
   void close_cells(int j) {
     const std::size_t at = g_.at(t_.i0 - halo, j);
@@ -101,18 +108,32 @@ class Sweep {
   }
 
   void find_y_fluxes(int j) {
-    face_row<G>({.begin = halo, .end = halo + t_.nx, .before = &cell(j - 1), .after = &cell(j), .shift = 0,
-                 .edge_before = &w_.y_edges[(j - 1) & 1], .edge_after = &w_.y_edges[j & 1],
-                 .normal_g = s_.closure.normal, .inv_d = 1 / g_.dy, .along_y = true},
+    face_row<G>({.begin = halo,
+                 .end = halo + t_.nx,
+                 .before = &cell(j - 1),
+                 .after = &cell(j),
+                 .shift = 0,
+                 .edge_before = &w_.y_edges[(j - 1) & 1],
+                 .edge_after = &w_.y_edges[j & 1],
+                 .normal_g = s_.closure.normal,
+                 .inv_d = 1 / g_.dy,
+                 .along_y = true},
                 below(j));
   }
 
   void find_x_fluxes(int j) {
     drop_row<G>(0, n_ - 1, cell(j), cell(j), 1, &s_.fall_x[static_cast<std::size_t>(t_.i0)], w_.x_faces);
     edge_row<G>(1, n_ - 1, s_.setup.scheme.second_order, cell(j), cell(j), cell(j), 1, false, w_.x_edges);
-    face_row<G>({.begin = 1, .end = halo + t_.nx, .before = &cell(j), .after = &cell(j), .shift = 1,
-                 .edge_before = &w_.x_edges, .edge_after = &w_.x_edges, .normal_g = s_.closure.normal,
-                 .inv_d = 1 / g_.dx, .along_y = false},
+    face_row<G>({.begin = 1,
+                 .end = halo + t_.nx,
+                 .before = &cell(j),
+                 .after = &cell(j),
+                 .shift = 1,
+                 .edge_before = &w_.x_edges,
+                 .edge_after = &w_.x_edges,
+                 .normal_g = s_.closure.normal,
+                 .inv_d = 1 / g_.dx,
+                 .along_y = false},
                 w_.x_faces);
   }
 
@@ -174,7 +195,7 @@ void Sweep<G>::balance(int j) {
     area = &s_.area[at];
   }
   const double *D0 = &start_.D[at], *Mx0 = &start_.Mx[at], *My0 = &start_.My[at];
-  const double *D1 = &from_.D[at];
+  const double* D1 = &from_.D[at];
   double *Lx = &s_.next.Mx[at], *Ly = &s_.next.My[at];
   const bool second = number_ == 2;
 #pragma GCC ivdep
@@ -201,8 +222,10 @@ void Sweep<G>::balance(int j) {
     double ry = -(ay * ((Wn * N.before[k] - Ws * S.after[k]) - half_PK * gy_c * (Wn - Ws)) +
                   ax * (We * X.tangential[k] - Ww * X.tangential[k - 1]));
     if constexpr (G != Geometry::flat) {
-      rx -= inv_dx * g * metric_x * row.rho[k] * (0.5 * (ex.h_minus[k] + ex.h_plus[k])) * (ex.b_plus[k] - ex.b_minus[k]);
-      ry -= inv_dy * g * metric_y * row.rho[k] * (0.5 * (ey.h_minus[k] + ey.h_plus[k])) * (ey.b_plus[k] - ey.b_minus[k]);
+      rx -=
+          inv_dx * g * metric_x * row.rho[k] * (0.5 * (ex.h_minus[k] + ex.h_plus[k])) * (ex.b_plus[k] - ex.b_minus[k]);
+      ry -=
+          inv_dy * g * metric_y * row.rho[k] * (0.5 * (ey.h_minus[k] + ey.h_plus[k])) * (ey.b_plus[k] - ey.b_minus[k]);
     }
     if constexpr (G == Geometry::terrain) {
       const double c2 = cosine[k] * cosine[k], cross = g * D * row.bx[k] * row.by[k] * c2;
@@ -232,11 +255,25 @@ void Sweep<G>::apply_friction(int j) {
   const CellRow& row = cell(j);
   const std::size_t at = g_.at(t_.i0, j);
   Conserved& to = number_ == 1 ? s_.predicted : s_.next;
-  const FrictionArgs args{.n = t_.nx, .stage = number_, .dt = dt_, .h = row.h + halo, .u = row.u + halo, .v = row.v + halo,
-                          .hold = row.hold + halo, .c = row.c + halo, .bx = row.bx + halo, .by = row.by + halo,
-                          .bend = w_.bend + halo, .D_new = w_.D_new + halo, .Msx = w_.Msx + halo, .Msy = w_.Msy + halo,
-                          .Mx_old = &start_.Mx[at], .My_old = &start_.My[at],
-                          .share = &s_.next.D[at], .Mx = &to.Mx[at], .My = &to.My[at]};
+  const FrictionArgs args{.n = t_.nx,
+                          .stage = number_,
+                          .dt = dt_,
+                          .h = row.h + halo,
+                          .u = row.u + halo,
+                          .v = row.v + halo,
+                          .hold = row.hold + halo,
+                          .c = row.c + halo,
+                          .bx = row.bx + halo,
+                          .by = row.by + halo,
+                          .bend = w_.bend + halo,
+                          .D_new = w_.D_new + halo,
+                          .Msx = w_.Msx + halo,
+                          .Msy = w_.Msy + halo,
+                          .Mx_old = &start_.Mx[at],
+                          .My_old = &start_.My[at],
+                          .share = &s_.next.D[at],
+                          .Mx = &to.Mx[at],
+                          .My = &to.My[at]};
   s_.kernels.friction(s_.closure, args);
   std::copy_n(w_.D_new + halo, t_.nx, &to.D[at]);
 }
@@ -306,9 +343,12 @@ StageResult run_stage(Solver& s, const State& state, int number, double dt) {
 
 StageResult stage(Solver& s, const State& state, int number, double dt) {
   switch (s.geometry) {
-    case Geometry::flat: return run_stage<Geometry::flat>(s, state, number, dt);
-    case Geometry::bed: return run_stage<Geometry::bed>(s, state, number, dt);
-    default: return run_stage<Geometry::terrain>(s, state, number, dt);
+    case Geometry::flat:
+      return run_stage<Geometry::flat>(s, state, number, dt);
+    case Geometry::bed:
+      return run_stage<Geometry::bed>(s, state, number, dt);
+    default:
+      return run_stage<Geometry::terrain>(s, state, number, dt);
   }
 }
 

@@ -14,19 +14,27 @@ struct Conserved {
 
 struct State {
   Conserved now;
-  double time = 0, next_step = 0;      // next_step <= 0: not known yet
+  double time = 0, next_step = 0;  // next_step <= 0: not known yet
   std::int64_t step = 0;
-  double smallest_step = 0;            // of all steps taken; 0 before the first
-  double cell_updates = 0;             // wet cells times steps
-  std::vector<double> crossed[4];      // mass that left through each boundary face so far, by Side
+  double smallest_step = 0;        // of all steps taken; 0 before the first
+  double cell_updates = 0;         // wet cells times steps
+  std::vector<double> crossed[4];  // mass that left through each boundary face so far, by Side
 };
 
 // Everything an exact checkpoint holds.
 inline std::vector<NamedArray> state_arrays(State& s) {
-  return {{"D", &s.now.D}, {"Mx", &s.now.Mx}, {"My", &s.now.My}, {"time", &s.time}, {"next_step", &s.next_step},
-          {"step", &s.step}, {"smallest_step", &s.smallest_step}, {"cell_updates", &s.cell_updates},
-          {"crossed_left", &s.crossed[0]}, {"crossed_right", &s.crossed[1]},
-          {"crossed_bottom", &s.crossed[2]}, {"crossed_top", &s.crossed[3]}};
+  return {{"D", &s.now.D},
+          {"Mx", &s.now.Mx},
+          {"My", &s.now.My},
+          {"time", &s.time},
+          {"next_step", &s.next_step},
+          {"step", &s.step},
+          {"smallest_step", &s.smallest_step},
+          {"cell_updates", &s.cell_updates},
+          {"crossed_left", &s.crossed[0]},
+          {"crossed_right", &s.crossed[1]},
+          {"crossed_bottom", &s.crossed[2]},
+          {"crossed_top", &s.crossed[3]}};
 }
 
 }  // namespace bagnold::shallow

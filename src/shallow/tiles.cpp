@@ -49,7 +49,9 @@ void copy_tile(const Solver& s, int tile, const Conserved& from, Conserved& to) 
 
 // Tiles along an inflow are always active.
 bool fed(const Solver& s, int tx, int ty) {
-  const auto inflow = [&](Side side) { return s.setup.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::inflow; };
+  const auto inflow = [&](Side side) {
+    return s.setup.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::inflow;
+  };
   return (tx == 0 && inflow(Side::left)) || (tx == s.tiles_x - 1 && inflow(Side::right)) ||
          (ty == 0 && inflow(Side::bottom)) || (ty == s.tiles_y - 1 && inflow(Side::top));
 }
@@ -60,7 +62,9 @@ void find_active_tiles(Solver& s, const State& state) {
   const int nx = s.tiles_x, ny = s.tiles_y;
   std::vector<std::uint8_t>& wanted = s.tile_wanted;
   wanted.assign(static_cast<std::size_t>(nx * ny), 0);
-  const auto want = [&](int tx, int ty) { wanted[static_cast<std::size_t>(((ty + ny) % ny) * nx + (tx + nx) % nx)] = 1; };
+  const auto want = [&](int tx, int ty) {
+    wanted[static_cast<std::size_t>(((ty + ny) % ny) * nx + (tx + nx) % nx)] = 1;
+  };
   for (const int tile : s.active) {
     const Wetness w = wetness(s, state, tile);
     if (!w.any) continue;

@@ -47,11 +47,18 @@ CellView view_cell(const Solver& s, const State& state, int i, int j) {
     speed2 += w * w;
   }
   const double froude = row->h[0] > 0 ? std::sqrt(speed2 / (normal * row->h[0])) : 0;
-  return {row->h[0], row->u[0], row->v[0], row->rho[0], row->K[0], row->alpha[0],
-          basal_friction(s.closure.set, s.closure.g, row->h[0], froude), froude};
+  return {row->h[0],
+          row->u[0],
+          row->v[0],
+          row->rho[0],
+          row->K[0],
+          row->alpha[0],
+          basal_friction(s.closure.set, s.closure.g, row->h[0], froude),
+          froude};
 }
 
-void view_row(const Solver& s, const State& state, int j, std::vector<double>& h, std::vector<double>& u, std::vector<double>& v) {
+void view_row(const Solver& s, const State& state, int j, std::vector<double>& h, std::vector<double>& u,
+              std::vector<double>& v) {
   const Grid& g = s.setup.grid;
   for (auto* field : {&h, &u, &v}) field->resize(static_cast<std::size_t>(g.nx));
   const auto row = std::make_unique<CellRow>();

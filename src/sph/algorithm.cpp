@@ -16,11 +16,11 @@
 namespace bagnold::sph {
 namespace {
 
-constexpr double advective_cfl = 0.2;      // h per step at most, for the schemes whose step is not bound by viscosity
-constexpr double step_growth = 1.1;        // of those schemes, from a first step of `first_step` times the limit
+constexpr double advective_cfl = 0.2;  // h per step at most, for the schemes whose step is not bound by viscosity
+constexpr double step_growth = 1.1;    // of those schemes, from a first step of `first_step` times the limit
 constexpr double first_step = 0.05;
-constexpr double fastest = 1e3;            // m/s: nothing granular moves so fast, the run has failed
-constexpr double closest_to_wall = 0.02;   // over dp
+constexpr double fastest = 1e3;           // m/s: nothing granular moves so fast, the run has failed
+constexpr double closest_to_wall = 0.02;  // over dp
 
 // a += factor b, all directions.
 void add(Field& a, const Field& b, double factor, const Model& model) {
@@ -44,17 +44,20 @@ struct Fastest {
 
 double fastest_particle(const State& state, const Model& model) {
   const Particles& p = state.particles;
-  const double v2 = parallel_sum<Fastest>(p.size(), [&](std::int64_t k) {
-    double sum = 0;
-    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) {
-      const double c = p.v[d][static_cast<std::size_t>(k)];
-      sum += c * c;
-    }
-    return Fastest{sum < fastest * fastest ? sum : std::numeric_limits<double>::infinity()};  // also for NaN
-  }).v2;
+  const double v2 =
+      parallel_sum<Fastest>(p.size(), [&](std::int64_t k) {
+        double sum = 0;
+        for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) {
+          const double c = p.v[d][static_cast<std::size_t>(k)];
+          sum += c * c;
+        }
+        return Fastest{sum < fastest * fastest ? sum : std::numeric_limits<double>::infinity()};  // also for NaN
+      }).v2;
   if (!std::isfinite(v2))
-    throw NumericalError(fmt::format("sph: a particle moves faster than {:g} m/s at t = {:g} s, step {}: the step limits (cfl, "
-                                     "viscous_factor) are too large for this flow", fastest, state.time, state.step));
+    throw NumericalError(
+        fmt::format("sph: a particle moves faster than {:g} m/s at t = {:g} s, step {}: the step limits (cfl, "
+                    "viscous_factor) are too large for this flow",
+                    fastest, state.time, state.step));
   return std::sqrt(v2);
 }
 
@@ -116,8 +119,10 @@ void sequential_step(State& state, Work& w, const Model& model) {
   if (model.numerics.volume_correction > 0) correct_volumes(w, p, model, dt);
   state.max_kinematic_viscosity = constitutive(w, p, model);
   update_volumes(w, p, model);
-  if (corrected) corrected_pressure_and_coefficients(w, p, model);
-  else pair_momentum_rate(w, p, model, false), pair_coefficients(w, p, model);
+  if (corrected)
+    corrected_pressure_and_coefficients(w, p, model);
+  else
+    pair_momentum_rate(w, p, model, false), pair_coefficients(w, p, model);
   if (model.stepping == Stepping::implicit) {
     solve_viscous(w, state, model, dt);
   } else {
@@ -144,16 +149,19 @@ void check(const Model& model) {
   if (model.corrected() && model.stepping == Stepping::minatti2015)
     throw UnphysicalError("numerics.stepping", "the variational operator needs implicit or explicit_euler stepping");
   if (model.corrected() && model.numerics.artificial_viscosity > 0)
-    throw UnphysicalError("numerics.artificial_viscosity", "belongs to the minatti2015 operator; the variational one needs none");
+    throw UnphysicalError("numerics.artificial_viscosity",
+                          "belongs to the minatti2015 operator; the variational one needs none");
   if (!model.corrected() && model.numerics.density_diffusion > 0)
     throw UnphysicalError("numerics.density_diffusion", "needs the variational operator");
   if (model.stepping == Stepping::minatti2015 && (model.numerics.shifting > 0 || model.numerics.volume_correction > 0))
-    throw UnphysicalError("numerics.shifting", "shifting and volume correction need implicit or explicit_euler stepping");
+    throw UnphysicalError("numerics.shifting",
+                          "shifting and volume correction need implicit or explicit_euler stepping");
   if (model.stepping != Stepping::minatti2015 && model.numerics.artificial_viscosity > 0)
     throw UnphysicalError("numerics.artificial_viscosity", "needs minatti2015 stepping");
   for (std::size_t d = 0; d < 3; ++d)
     if (model.period[d] > 0 && model.period[d] < 2.2 * model.h())
-      throw UnphysicalError("scenario.length", fmt::format("a periodic length must exceed 2.2 h = {:g} m", 2.2 * model.h()));
+      throw UnphysicalError("scenario.length",
+                            fmt::format("a periodic length must exceed 2.2 h = {:g} m", 2.2 * model.h()));
   const auto range = [](const auto& law) { return law.phi_min < law.phi_max; };
   if (!std::visit(range, model.material.dilatancy)) throw UnphysicalError("material.phi_min", "must be below phi_max");
   if (!(std::visit([](const auto& r) { return r.limit_friction() > r.static_friction(); }, model.material.rheology)))
@@ -199,8 +207,10 @@ void step(State& state, Work& w, const Model& model) {
     dt = std::min(dt, state.dt > 0 ? step_growth * state.dt : first_step * dt);
   }
   state.dt = dt;
-  if (model.stepping == Stepping::minatti2015) midpoint_step(state, w, model);
-  else sequential_step(state, w, model);
+  if (model.stepping == Stepping::minatti2015)
+    midpoint_step(state, w, model);
+  else
+    sequential_step(state, w, model);
   state.time += dt;
   ++state.step;
 }

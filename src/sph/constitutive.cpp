@@ -71,8 +71,10 @@ double constitutive(Work& w, Particles& p, const Model& model) {
   const Material& m = model.material;
   return std::visit(
       [&](const auto& rheology, const auto& dilatancy, const auto& grains, const auto& regularisation) {
-        const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(dilatancy)>, std::decay_t<decltype(regularisation)>> law{
-            rheology.excess(), dilatancy, grains, regularisation, rheology.static_friction(), m.grain_diameter, model.dim};
+        const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(dilatancy)>,
+                   std::decay_t<decltype(regularisation)>>
+            law{rheology.excess(),          dilatancy,        grains,   regularisation,
+                rheology.static_friction(), m.grain_diameter, model.dim};
         return sweep(law, w, p);
       },
       m.rheology, m.dilatancy, m.eos, m.regularisation);

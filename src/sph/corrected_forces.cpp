@@ -24,8 +24,10 @@ struct StressRecord {
 
 template <int D>
 auto& stress_records(Work& w) {
-  if constexpr (D == 2) return w.wide;
-  else return w.broad;
+  if constexpr (D == 2)
+    return w.wide;
+  else
+    return w.broad;
 }
 
 template <int D>
@@ -45,7 +47,8 @@ void write_pressure_records(Work& w, std::int64_t n) {
     to[F::area] = w.area[i];
     to[F::volume] = w.volume[i];
     to[F::eta] = w.viscosity[i];
-    for (int m = 0; m < D * D; ++m) to[F::P + m] = w.pressure[i] * w.volume[i] * w.correction[i * D * D + static_cast<std::size_t>(m)];
+    for (int m = 0; m < D * D; ++m)
+      to[F::P + m] = w.pressure[i] * w.volume[i] * w.correction[i * D * D + static_cast<std::size_t>(m)];
   });
   fill_images(w.pairs, n, w.wide, [&](std::size_t image, const double* from, double* to) {
     const auto &S = w.pairs.images.S[image], &R = w.pairs.images.R[image];
@@ -155,7 +158,8 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, double trace_
     Matrix<D> T;
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b)
-        T[a * D + b] = twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) - left[a * D + b] + taken[a * D + b];
+        T[a * D + b] =
+            twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) - left[a * D + b] + taken[a * D + b];
     const Matrix<D> TB = product<D>(T, B);
     if (model.axisymmetric) force[0][i] = -twice * (hoop - trace) * ir;
     double* to = records.at(k);
@@ -228,16 +232,20 @@ void corrected_pressure_and_coefficients(Work& w, const Particles& p, const Mode
   std::visit(
       [&](const auto& mean) {
         using Mean = std::decay_t<decltype(mean)>;
-        if (model.dim == 2) write_pressure_records<2>(w, p.size()), pressure_sweep<2, Mean>(w, p, model, coefficient, isotropic);
-        else write_pressure_records<3>(w, p.size()), pressure_sweep<3, Mean>(w, p, model, coefficient, isotropic);
+        if (model.dim == 2)
+          write_pressure_records<2>(w, p.size()), pressure_sweep<2, Mean>(w, p, model, coefficient, isotropic);
+        else
+          write_pressure_records<3>(w, p.size()), pressure_sweep<3, Mean>(w, p, model, coefficient, isotropic);
       },
       model.mean);
 }
 
 void corrected_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
   const double factor = trace_factor(model);
-  if (model.dim == 2) stress_sweep<2>(w, p, model, factor, v, force), force_sweep<2>(w, p, model, force);
-  else stress_sweep<3>(w, p, model, factor, v, force), force_sweep<3>(w, p, model, force);
+  if (model.dim == 2)
+    stress_sweep<2>(w, p, model, factor, v, force), force_sweep<2>(w, p, model, force);
+  else
+    stress_sweep<3>(w, p, model, factor, v, force), force_sweep<3>(w, p, model, force);
 }
 
 }  // namespace bagnold::sph

@@ -12,8 +12,10 @@ template <class F>
 void dispatch(const Model& model, F&& f) {
   std::visit(
       [&](const auto& kernel) {
-        if (model.dim == 2) f(std::integral_constant<int, 2>{}, kernel);
-        else f(std::integral_constant<int, 3>{}, kernel);
+        if (model.dim == 2)
+          f(std::integral_constant<int, 2>{}, kernel);
+        else
+          f(std::integral_constant<int, 3>{}, kernel);
       },
       model.kernel);
 }
@@ -33,9 +35,13 @@ struct PairShape {
     return sqrt(r2) * inv_h;
   }
   template <class T>
-  T f(T R) const { return slope_scale * Kernel::slope(R); }
+  T f(T R) const {
+    return slope_scale * Kernel::slope(R);
+  }
   template <class T>
-  T w(T R) const { return value_scale * Kernel::value(R); }
+  T w(T R) const {
+    return value_scale * Kernel::value(R);
+  }
 };
 
 }  // namespace bagnold::sph

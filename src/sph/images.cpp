@@ -12,8 +12,8 @@ double position(const Particles& p, const Images& images, std::int64_t n, std::i
 }
 
 // Appends the image of `who` (particle or image) under position -> r position + shift, velocity -> s velocity.
-void append(Images& images, std::int64_t n, std::int64_t who, const std::array<double, 3>& r, const std::array<double, 3>& s,
-            const std::array<double, 3>& shift) {
+void append(Images& images, std::int64_t n, std::int64_t who, const std::array<double, 3>& r,
+            const std::array<double, 3>& s, const std::array<double, 3>& shift) {
   std::array<double, 3> R = r, S = s, total = shift;
   auto parent = static_cast<std::int32_t>(who);
   if (who >= n) {

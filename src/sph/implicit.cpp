@@ -64,7 +64,8 @@ int solve(Work& w, State& state, const Model& model, double dt) {
   double rz = precondition<D>(w, n, r, z);
   each([&](std::size_t d, std::size_t i) { v[d][i] = z[d][i]; });
   const double mass = parallel_sum<double>(n, [&](std::int64_t i) { return p.mass[static_cast<std::size_t>(i)]; });
-  const double g_dt = model.numerics.cg_tolerance * std::max(model.gravity_norm(), 1e-12) * dt, limit = mass * g_dt * g_dt;
+  const double g_dt = model.numerics.cg_tolerance * std::max(model.gravity_norm(), 1e-12) * dt,
+               limit = mass * g_dt * g_dt;
   int iterations = 0;
   while (rz > limit) {
     viscous_force(w, p, model, v, q);
@@ -78,9 +79,10 @@ int solve(Work& w, State& state, const Model& model, double dt) {
       return sum;
     });
     if (++iterations > model.numerics.cg_max_iterations || !(curvature > 0))
-      throw NumericalError(fmt::format("sph: implicit viscosity: no convergence at t = {:g} s, step {}, after {} iterations "
-                                       "(residual {:g}, wanted {:g}, curvature {:g})",
-                                       state.time, state.step, iterations, std::sqrt(rz), std::sqrt(limit), curvature));
+      throw NumericalError(
+          fmt::format("sph: implicit viscosity: no convergence at t = {:g} s, step {}, after {} iterations "
+                      "(residual {:g}, wanted {:g}, curvature {:g})",
+                      state.time, state.step, iterations, std::sqrt(rz), std::sqrt(limit), curvature));
     const double alpha = rz / curvature;
     each([&](std::size_t d, std::size_t i) {
       x[d][i] += alpha * v[d][i];
@@ -98,8 +100,10 @@ int solve(Work& w, State& state, const Model& model, double dt) {
 
 void viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
   ++w.applications;
-  if (model.corrected()) corrected_viscous_force(w, p, model, v, force);
-  else pair_viscous_force(w, p, model, v, force);
+  if (model.corrected())
+    corrected_viscous_force(w, p, model, v, force);
+  else
+    pair_viscous_force(w, p, model, v, force);
 }
 
 int solve_viscous(Work& w, State& state, const Model& model, double dt) {

@@ -14,8 +14,8 @@ constexpr double blend_from = 0.3, blend_to = 0.5;
 // Sums over the neighbours of one particle.
 template <int D>
 struct Sums {
-  double density = 0;                // sum m_j f (v_ij . r_ij)
-  Matrix<D> S{};                     // sum A_j f v_ij r_ij
+  double density = 0;                     // sum m_j f (v_ij . r_ij)
+  Matrix<D> S{};                          // sum A_j f v_ij r_ij
   std::array<double, D*(D + 1) / 2> M{};  // sum A_j f r r, upper triangle
   std::array<double, D> imbalance{};
   double concentration = 0;
@@ -171,17 +171,22 @@ void update_volumes(Work& w, const Particles& p, const Model& model) {
 void kinematics(Work& w, const Particles& p, const Model& model, Kinematics what, bool moments) {
   update_volumes(w, p, model);
   if (what == Kinematics::corrected) {
-    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) w.r[d].resize(w.pairs.index.size() / octet_size);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
+      w.r[d].resize(w.pairs.index.size() / octet_size);
     w.f.resize(w.pairs.index.size() / octet_size);
   }
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;
     using Kernel = std::decay_t<decltype(kernel)>;
     write_records<D>(w, p);
-    if (what == Kinematics::density) sweep<D, Kernel, Kinematics::density, false>(w, p, model);
-    else if (what == Kinematics::corrected) sweep<D, Kernel, Kinematics::corrected, true>(w, p, model);
-    else if (moments) sweep<D, Kernel, Kinematics::pairs, true>(w, p, model);
-    else sweep<D, Kernel, Kinematics::pairs, false>(w, p, model);
+    if (what == Kinematics::density)
+      sweep<D, Kernel, Kinematics::density, false>(w, p, model);
+    else if (what == Kinematics::corrected)
+      sweep<D, Kernel, Kinematics::corrected, true>(w, p, model);
+    else if (moments)
+      sweep<D, Kernel, Kinematics::pairs, true>(w, p, model);
+    else
+      sweep<D, Kernel, Kinematics::pairs, false>(w, p, model);
   });
 }
 

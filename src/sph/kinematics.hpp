@@ -5,9 +5,9 @@
 namespace bagnold::sph {
 
 enum class Kinematics {
-  density,     // density_rate only (first half of the midpoint step)
-  pairs,       // density_rate and gradient as printed: eqs 26, 31
-  corrected,   // M, B, L = S B, density_rate = -rho tr L; keeps the pairs' geometry
+  density,    // density_rate only (first half of the midpoint step)
+  pairs,      // density_rate and gradient as printed: eqs 26, 31
+  corrected,  // M, B, L = S B, density_rate = -rho tr L; keeps the pairs' geometry
 };
 // Fills volume, area, density_rate, shear_rate; `corrected` (and `pairs` with `moments`) also coverage, concentration,
 // imbalance.

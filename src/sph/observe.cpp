@@ -30,7 +30,8 @@ std::array<double, 3> momentum(const State& state, const Model& model) {
 }
 
 double total_mass(const State& state) {
-  return parallel_sum<double>(state.particles.size(), [&](std::int64_t k) { return state.particles.mass[static_cast<std::size_t>(k)]; });
+  return parallel_sum<double>(state.particles.size(),
+                              [&](std::int64_t k) { return state.particles.mass[static_cast<std::size_t>(k)]; });
 }
 
 double max_inertial_number(const State& state, const Work& w, const Model& model) {
@@ -50,7 +51,8 @@ Front find_front(const State& state, const Work& w, const Model& model) {
   std::vector<std::int32_t> group(n), size(n, 1);
   std::iota(group.begin(), group.end(), 0);
   const auto root = [&](std::int32_t i) {
-    while (group[static_cast<std::size_t>(i)] != i) i = group[static_cast<std::size_t>(i)] = group[static_cast<std::size_t>(group[static_cast<std::size_t>(i)])];
+    while (group[static_cast<std::size_t>(i)] != i)
+      i = group[static_cast<std::size_t>(i)] = group[static_cast<std::size_t>(group[static_cast<std::size_t>(i)])];
     return i;
   };
   const double near = link * link * model.spacing * model.spacing;
@@ -59,7 +61,8 @@ Front find_front(const State& state, const Work& w, const Model& model) {
       const auto j = static_cast<std::size_t>(w.pairs.index[static_cast<std::size_t>(q)]);
       if (j >= i) continue;
       double r2 = 0;
-      for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) r2 += (p.x[d][i] - p.x[d][j]) * (p.x[d][i] - p.x[d][j]);
+      for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
+        r2 += (p.x[d][i] - p.x[d][j]) * (p.x[d][i] - p.x[d][j]);
       if (r2 > near) continue;
       auto a = root(static_cast<std::int32_t>(i)), b = root(static_cast<std::int32_t>(j));
       if (a == b) continue;
@@ -69,7 +72,8 @@ Front find_front(const State& state, const Work& w, const Model& model) {
     }
   std::int32_t largest = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (size[static_cast<std::size_t>(root(static_cast<std::int32_t>(i)))] > size[static_cast<std::size_t>(largest)]) largest = root(static_cast<std::int32_t>(i));
+    if (size[static_cast<std::size_t>(root(static_cast<std::int32_t>(i)))] > size[static_cast<std::size_t>(largest)])
+      largest = root(static_cast<std::int32_t>(i));
   Front front;
   for (std::size_t i = 0; i < n; ++i) {
     double r2 = 0;

@@ -7,10 +7,10 @@
 namespace bagnold::sph {
 namespace {
 
-constexpr double interior = 0.9;       // coverage above which the concentration measures volume
-constexpr double near_surface = 0.85;  // coverage below which only tangential shifts are made
-constexpr double loose = 0.4;          // coverage below which nothing is shifted
-constexpr double largest_shift = 0.02; // over dp
+constexpr double interior = 0.9;        // coverage above which the concentration measures volume
+constexpr double near_surface = 0.85;   // coverage below which only tangential shifts are made
+constexpr double loose = 0.4;           // coverage below which nothing is shifted
+constexpr double largest_shift = 0.02;  // over dp
 
 // Unit eigenvector of the symmetric `m` for its eigenvalue `value`.
 std::array<double, 2> eigenvector(const Matrix<2>& m, double value) {
@@ -111,8 +111,10 @@ void diffuse(Work& w, const Particles& p, const Model& model) {
 }  // namespace
 
 void diffuse_density(Work& w, const Particles& p, const Model& model) {
-  if (model.dim == 2) diffuse<2>(w, p, model);
-  else diffuse<3>(w, p, model);
+  if (model.dim == 2)
+    diffuse<2>(w, p, model);
+  else
+    diffuse<3>(w, p, model);
 }
 
 double lattice_concentration(const Model& model) {
@@ -136,13 +138,16 @@ void correct_volumes(Work& w, Particles& p, const Model& model, double dt) {
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     if (w.coverage[i] > interior)
-      p.rho[i] *= 1 + (w.concentration[i] / undisturbed - 1) * std::min(0.5, model.numerics.volume_correction * w.shear_rate[i] * dt);
+      p.rho[i] *= 1 + (w.concentration[i] / undisturbed - 1) *
+                          std::min(0.5, model.numerics.volume_correction * w.shear_rate[i] * dt);
   });
 }
 
 void shift_particles(const Work& w, Particles& p, const Model& model, double dt) {
-  if (model.dim == 2) shift<2>(w, p, model, dt);
-  else shift<3>(w, p, model, dt);
+  if (model.dim == 2)
+    shift<2>(w, p, model, dt);
+  else
+    shift<3>(w, p, model, dt);
 }
 
 }  // namespace bagnold::sph

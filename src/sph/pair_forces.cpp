@@ -11,13 +11,16 @@ namespace {
 
 template <int D>
 struct PairRecord {
-  static constexpr int x = 0, v = D, mass = 2 * D, P = mass + 1, eta = mass + 2, inv_rho = mass + 3, size = mass + 4;  // P = p/rho^2
+  static constexpr int x = 0, v = D, mass = 2 * D, P = mass + 1, eta = mass + 2, inv_rho = mass + 3,
+                       size = mass + 4;  // P = p/rho^2
 };
 
 template <int D>
 auto& pair_records(Work& w) {
-  if constexpr (D == 2) return w.slim;
-  else return w.wide;
+  if constexpr (D == 2)
+    return w.slim;
+  else
+    return w.wide;
 }
 
 template <int D>
@@ -81,8 +84,8 @@ void rate_sweep(Work& w, const Particles& p, const Model& model) {
         r2 += r[d] * r[d];
         vr += (self[F::v + d] - other[F::v + d]) * r[d];
       }
-      const Octet s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass, other + F::mass,
-                                                         coefficient, alpha_h_c);
+      const Octet s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass,
+                                                          other + F::mass, coefficient, alpha_h_c);
       for (int d = 0; d < D; ++d) sum[d] += s * r[d];
     });
     std::array<double, D> a;
@@ -93,8 +96,8 @@ void rate_sweep(Work& w, const Particles& p, const Model& model) {
       for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
         double r2 = tiny, vr = 0;
         for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * p.v[d][i] * r[d];
-        const double s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass, self + F::mass,
-                                                             coefficient, alpha_h_c);
+        const double s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass,
+                                                             self + F::mass, coefficient, alpha_h_c);
         for (std::size_t d = 0; d < D; ++d) a[d] += s * r[d];
       });
     }
@@ -124,7 +127,8 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
       gather(records, j, other);
       for (int d = 0; d < D; ++d) r[d] = self[F::x + d] - other[F::x + d], r2 += r[d] * r[d];
       const Octet volume = other[F::mass] * other[F::inv_rho] * w.volume[i];
-      const Octet kk = coefficient * Mean::of(splat(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
+      const Octet kk =
+          coefficient * Mean::of(splat(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
       w.k[q] = kk;
       for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
       add_block<D>(block, kk, r);
@@ -138,7 +142,9 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
       for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
         double r2 = tiny;
         for (const double c : r) r2 += c * c;
-        add_block<D>(wall, coefficient * w.viscosity[i] * w.volume[i] * w.volume[i] * shape.f(shape.ratio(r2)) / r2 * beta, r.data());
+        add_block<D>(wall,
+                     coefficient * w.viscosity[i] * w.volume[i] * w.volume[i] * shape.f(shape.ratio(r2)) / r2 * beta,
+                     r.data());
       });
     }
     for (std::size_t m = 0; m < D * (D + 1) / 2; ++m)
@@ -188,9 +194,12 @@ void pair_momentum_rate(Work& w, const Particles& p, const Model& model, bool vi
     std::visit(
         [&](const auto& mean) {
           using Mean = std::decay_t<decltype(mean)>;
-          if (!viscous) rate_sweep<D, Kernel, Mean, false, false>(w, p, model);
-          else if (artificial) rate_sweep<D, Kernel, Mean, true, true>(w, p, model);
-          else rate_sweep<D, Kernel, Mean, true, false>(w, p, model);
+          if (!viscous)
+            rate_sweep<D, Kernel, Mean, false, false>(w, p, model);
+          else if (artificial)
+            rate_sweep<D, Kernel, Mean, true, true>(w, p, model);
+          else
+            rate_sweep<D, Kernel, Mean, true, false>(w, p, model);
         },
         model.mean);
   });
@@ -198,19 +207,24 @@ void pair_momentum_rate(Work& w, const Particles& p, const Model& model, bool vi
 
 void pair_coefficients(Work& w, const Particles& p, const Model& model) {
   w.k.resize(w.pairs.index.size() / octet_size);
-  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) w.r[d].resize(w.pairs.index.size() / octet_size);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
+    w.r[d].resize(w.pairs.index.size() / octet_size);
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;
     write_pair_records<D>(w, p, model);
-    std::visit([&](const auto& mean) {
-      coefficient_sweep<D, std::decay_t<decltype(kernel)>, std::decay_t<decltype(mean)>>(w, p, model);
-    }, model.mean);
+    std::visit(
+        [&](const auto& mean) {
+          coefficient_sweep<D, std::decay_t<decltype(kernel)>, std::decay_t<decltype(mean)>>(w, p, model);
+        },
+        model.mean);
   });
 }
 
 void pair_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
-  if (model.dim == 2) viscous_sweep<2>(w, p, v, force);
-  else viscous_sweep<3>(w, p, v, force);
+  if (model.dim == 2)
+    viscous_sweep<2>(w, p, v, force);
+  else
+    viscous_sweep<3>(w, p, v, force);
 }
 
 }  // namespace bagnold::sph

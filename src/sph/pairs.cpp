@@ -106,7 +106,8 @@ void relist(Pairs& pairs, const Particles& p, const Model& model) {
     Vec3& image = x[i];
     for (std::size_t k = 0; k < static_cast<std::size_t>(model.dim); ++k)
       image[k == 1 && model.dim == 2 ? 2 : static_cast<int>(k)] =
-          pairs.images.R[i - n][k] * built.x[k][static_cast<std::size_t>(pairs.images.parent[i - n])] + pairs.images.shift[i - n][k];
+          pairs.images.R[i - n][k] * built.x[k][static_cast<std::size_t>(pairs.images.parent[i - n])] +
+          pairs.images.shift[i - n][k];
   }
   neighbours::CellGrid grid;
   sort_into_cells(grid, Box{}, x, cutoff);

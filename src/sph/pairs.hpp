@@ -14,7 +14,7 @@ struct Pairs {
   std::vector<std::int32_t> index;
   Images images;
   double skin = 0;
-  std::int64_t elements(std::int64_t n) const { return n + images.size() + 1; }   // particles, images, the dummy
+  std::int64_t elements(std::int64_t n) const { return n + images.size() + 1; }  // particles, images, the dummy
 };
 
 // True when some particle has moved, or will have within the time `lead`, so far that a pair closer than 2h may be missing.

@@ -16,7 +16,9 @@ struct Records {
   std::vector<Octet> data;
   double* at(std::int64_t i) { return reinterpret_cast<double*>(data.data()) + i * Width; }
   const double* at(std::int64_t i) const { return reinterpret_cast<const double*>(data.data()) + i * Width; }
-  void resize(std::int64_t elements) { data.resize(static_cast<std::size_t>(elements * (Width / octet_size)), Octet{}); }
+  void resize(std::int64_t elements) {
+    data.resize(static_cast<std::size_t>(elements * (Width / octet_size)), Octet{});
+  }
 };
 
 // out[f] = field f of the eight neighbours j.

@@ -4,10 +4,12 @@ namespace bagnold::sph {
 
 std::vector<NamedArray> named_arrays(State& state) {
   Particles& p = state.particles;
-  std::vector<NamedArray> arrays{{"time", &state.time}, {"dt", &state.dt}, {"step", &state.step},
-                                 {"max_kinematic_viscosity", &state.max_kinematic_viscosity},
-                                 {"rho", &p.rho}, {"mass", &p.mass}, {"root", &p.root}, {"id", &p.id}};
-  const std::array<std::pair<const char*, Field*>, 4> vectors{{{"x", &p.x}, {"v", &p.v}, {"rate", &p.rate}, {"x_built", &p.x_built}}};
+  std::vector<NamedArray> arrays{{"time", &state.time}, {"dt", &state.dt},
+                                 {"step", &state.step}, {"max_kinematic_viscosity", &state.max_kinematic_viscosity},
+                                 {"rho", &p.rho},       {"mass", &p.mass},
+                                 {"root", &p.root},     {"id", &p.id}};
+  const std::array<std::pair<const char*, Field*>, 4> vectors{
+      {{"x", &p.x}, {"v", &p.v}, {"rate", &p.rate}, {"x_built", &p.x_built}}};
   for (const auto& [name, vector] : vectors)
     for (std::size_t k = 0; k < 3; ++k) arrays.push_back({std::string(name) + "_" + std::to_string(k), &(*vector)[k]});
   return arrays;

@@ -12,19 +12,19 @@ namespace bagnold::sph {
 using Field = std::array<std::vector<double>, 3>;
 
 struct Particles {
-  Field x, v;                        // position, velocity at t
-  Field rate;                        // Dv/Dt of the last step; explicit steps start from it
-  Field x_built;                     // positions the neighbour list was built at: it decides when to build again
-  std::vector<double> rho, mass;     // bulk density; mass (per unit width planar, of the whole ring axisymmetric)
-  std::vector<double> root;          // sqrt(rho_s* - 1), start of the next solution of the cubic
-  std::vector<std::int64_t> id;      // survives reordering
+  Field x, v;                     // position, velocity at t
+  Field rate;                     // Dv/Dt of the last step; explicit steps start from it
+  Field x_built;                  // positions the neighbour list was built at: it decides when to build again
+  std::vector<double> rho, mass;  // bulk density; mass (per unit width planar, of the whole ring axisymmetric)
+  std::vector<double> root;       // sqrt(rho_s* - 1), start of the next solution of the cubic
+  std::vector<std::int64_t> id;   // survives reordering
   std::int64_t size() const { return static_cast<std::int64_t>(mass.size()); }
 };
 
 struct State {
   Particles particles;
   double time = 0;
-  double dt = 0;                     // of the last step
+  double dt = 0;                       // of the last step
   double max_kinematic_viscosity = 0;  // max eta/rho of the last step: the explicit viscous limit of the next
   std::int64_t step = 0;
 };

@@ -16,25 +16,25 @@ struct Work {
   // Per particle. `volume` m/rho weighs energies, `area` (= volume but for axisymmetric flow: m/(2 pi r rho)) weighs
   // gradients. Tensors have dim x dim numbers a particle, row by row.
   std::vector<double> volume, area;
-  std::vector<double> density_rate;        // D rho/Dt
-  std::vector<double> shear_rate;          // sqrt(2 e:e), 1/s
-  std::vector<double> pressure, viscosity; // Pa, Pa s
-  std::vector<double> coverage;            // smallest eigenvalue of M: 1 inside, 0.5 at a free surface, 0 alone
-  std::vector<double> concentration;       // sum A_j W, 1 inside
-  std::vector<double> correction;          // B
-  std::vector<double> gradient;            // L
-  Field imbalance;                         // sum A_j f r, points where neighbours are missing
-  Field acceleration;                      // gravity and pressure (and viscosity for the minatti2015 step)
-  Field force;                             // scratch: viscous force
+  std::vector<double> density_rate;         // D rho/Dt
+  std::vector<double> shear_rate;           // sqrt(2 e:e), 1/s
+  std::vector<double> pressure, viscosity;  // Pa, Pa s
+  std::vector<double> coverage;             // smallest eigenvalue of M: 1 inside, 0.5 at a free surface, 0 alone
+  std::vector<double> concentration;        // sum A_j W, 1 inside
+  std::vector<double> correction;           // B
+  std::vector<double> gradient;             // L
+  Field imbalance;                          // sum A_j f r, points where neighbours are missing
+  Field acceleration;                       // gravity and pressure (and viscosity for the minatti2015 step)
+  Field force;                              // scratch: viscous force
   // Per pair, as long as positions do not change: separation, f = -W'/r, k/r^2 of the residual viscosity.
   std::array<std::vector<Octet>, 3> r;
   std::vector<Octet> f, k;
-  std::vector<double> quartic;             // 1/2 sum k rrrr/r^2, the distinct components
+  std::vector<double> quartic;  // 1/2 sum k rrrr/r^2, the distinct components
   Records<8> slim;
   Records<16> wide;
   Records<32> broad;
   // Of the last implicit solve.
-  std::int64_t applications = 0;           // of the viscous operator, all steps
+  std::int64_t applications = 0;  // of the viscous operator, all steps
   Field cg_r, cg_z, cg_p, cg_q;
   std::vector<double> preconditioner;
   void resize(std::int64_t n, int dim);

@@ -69,7 +69,8 @@ class StoredRuns : public testing::Test {
     laws::Linear normal;
     normal.stiffness = 2000;
     normal.damping = 2;
-    laws = dem::compile(dem::uniform_model({"grain", "base"}, {normal, laws::LinearHistory{}, laws::NoRollingResistance{}}), 0.5);
+    laws = dem::compile(
+        dem::uniform_model({"grain", "base"}, {normal, laws::LinearHistory{}, laws::NoRollingResistance{}}), 0.5);
   }
 
   void record(io::H5File& file, int k) {
@@ -81,19 +82,26 @@ class StoredRuns : public testing::Test {
     dem::list_contacts(state, laws, contacts);
     app::write_dem_snapshot(file, group, state, contacts);
     const std::size_t n = s.x.size();
-    atoms += fmt::format("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp ff\n0 3\n0 3\n-1 9\nITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass\n", state.step, n);
+    atoms += fmt::format(
+        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp ff\n0 3\n0 3\n-1 9\nITEM: ATOMS id type "
+        "x y z vx vy vz omegax omegay omegaz radius mass\n",
+        state.step, n);
     data += fmt::format("{} {} 0 0 -1 3 3 9\n", n, state.time());
     for (std::size_t a = 0; a < n; ++a) {
-      const std::size_t i = n - 1 - a;   // not in the order of ids
+      const std::size_t i = n - 1 - a;  // not in the order of ids
       const Vec3 x = wrap(state.box, s.x[i]);
-      atoms += fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}\n", i + 1, i < static_cast<std::size_t>(s.flowing) ? 1 : 2, x.x, x.y, x.z, s.v[i].x, s.v[i].y, s.v[i].z, s.omega[i].x,
-                           s.omega[i].y, s.omega[i].z, 0.5 * s.diameter[i], s.mass[i]);
+      atoms += fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}\n", i + 1,
+                           i < static_cast<std::size_t>(s.flowing) ? 1 : 2, x.x, x.y, x.z, s.v[i].x, s.v[i].y, s.v[i].z,
+                           s.omega[i].x, s.omega[i].y, s.omega[i].z, 0.5 * s.diameter[i], s.mass[i]);
       const Vec3 y = wrap(state.box, s.x[a]);
-      data += fmt::format("{} {} {} {} {} {} {} 0 0 0 {} {} {} {}\n", y.x, y.y, y.z, s.v[a].x, s.v[a].y, s.v[a].z, 0.5 * s.diameter[a], s.omega[a].x, s.omega[a].y, s.omega[a].z,
+      data += fmt::format("{} {} {} {} {} {} {} 0 0 0 {} {} {} {}\n", y.x, y.y, y.z, s.v[a].x, s.v[a].y, s.v[a].z,
+                          0.5 * s.diameter[a], s.omega[a].x, s.omega[a].y, s.omega[a].z,
                           a < static_cast<std::size_t>(s.flowing) ? 0 : 1);
     }
-    entries += fmt::format("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS pp pp ff\n0 3\n0 3\n-1 9\nITEM: ENTRIES index c_1[1] c_1[2] c_2[1] c_2[2] c_2[3]\n", state.step,
-                           s.contacts.size());
+    entries += fmt::format(
+        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS pp pp ff\n0 3\n0 3\n-1 9\nITEM: ENTRIES "
+        "index c_1[1] c_1[2] c_2[1] c_2[2] c_2[3]\n",
+        state.step, s.contacts.size());
     fstat += fmt::format("# {} 0\n# 0 0 -1 3 3 9\n# 0.5 0.5 0 0 0 0\n", state.time());
     int row = 0;
     for (const dem::Contact& c : s.contacts) {
@@ -103,16 +111,18 @@ class StoredRuns : public testing::Test {
       const double ft = norm(tangential);
       const Vec3 t = ft > 0 ? tangential / ft : Vec3{};
       const auto line = [&](int i, int j, const Vec3& normal, const Vec3& along) {
-        fstat += fmt::format("{} {} {} 0 0 0 {} 0 {} {} {} {} {} {} {} {}\n", state.time(), i, j, c.overlap, fn, ft, normal.x, normal.y, normal.z, along.x, along.y, along.z);
+        fstat += fmt::format("{} {} {} 0 0 0 {} 0 {} {} {} {} {} {} {} {}\n", state.time(), i, j, c.overlap, fn, ft,
+                             normal.x, normal.y, normal.z, along.x, along.y, along.z);
       };
       line(c.i, c.j, c.normal, t);
-      if (c.j < s.flowing) line(c.j, c.i, -c.normal, -t);   // once for each free particle
+      if (c.j < s.flowing) line(c.j, c.i, -c.normal, -t);  // once for each free particle
     }
   }
 
   cg::MeanProfile profile_of(const std::vector<fs::path>& inputs) {
     cg::BlockedProfile profile(kernel, 0.1, state.box);
-    app::read_instants(inputs, {.base_types = base_types, .density = density, .timestep = state.dt}, [&](const cg::StoredSnapshot& s) { profile.add(s.view()); });
+    app::read_instants(inputs, {.base_types = base_types, .density = density, .timestep = state.dt},
+                       [&](const cg::StoredSnapshot& s) { profile.add(s.view()); });
     return profile.mean();
   }
 
@@ -127,7 +137,8 @@ class StoredRuns : public testing::Test {
     EXPECT_GT(peak[cg::kContact + 8], 0);
     EXPECT_GT(peak[cg::kBase + 8], 0);
     for (std::size_t n = 0; n < p.z.size(); ++n)
-      for (std::size_t c = 0; c < cg::kChannels; ++c) EXPECT_NEAR(p.value[n][c], expected.value[n][c], 1e-10 * peak[c]) << "channel " << c;
+      for (std::size_t c = 0; c < cg::kChannels; ++c)
+        EXPECT_NEAR(p.value[n][c], expected.value[n][c], 1e-10 * peak[c]) << "channel " << c;
   }
 
   fs::path dir;
@@ -168,8 +179,10 @@ TEST_F(StoredRuns, FilesThatDoNotFitAreRefused) {
 
 // Forces on id2 instead of id1 would turn every stress round; attraction on the whole gives it away.
 TEST_F(StoredRuns, SwappedPartnersAreNoticed) {
-  EXPECT_THROW(app::read_instants({dir / "atoms.dump", dir / "contacts.dump"},
-                                  {.base_types = {2}, .density = density, .timestep = 1, .contact_columns = {"id2", "id1", "fx", "fy", "fz"}},
-                                  [](const cg::StoredSnapshot&) {}),
-               InputError);
+  EXPECT_THROW(
+      app::read_instants(
+          {dir / "atoms.dump", dir / "contacts.dump"},
+          {.base_types = {2}, .density = density, .timestep = 1, .contact_columns = {"id2", "id1", "fx", "fy", "fz"}},
+          [](const cg::StoredSnapshot&) {}),
+      InputError);
 }

@@ -82,12 +82,18 @@ TEST_P(SameBits, WhateverTheThreadsAndTheOutput) {
   ASSERT_EQ(bagnold(scratch, "run c.toml -o one --quiet --threads 1" + GetParam()).exit_code, 0);
   ASSERT_EQ(bagnold(scratch, "run c.toml -o two --quiet --threads 2" + GetParam()).exit_code, 0);
   expect_same_state(scratch / "one", scratch / "two");
-  ASSERT_EQ(bagnold(scratch, "run c.toml -o busy --quiet --set output.series_every=0.01 --set output.vtk_every=0.2 "
-                             "--set output.snapshot_every=0.2" + GetParam()).exit_code, 0);
-  const auto a = io::H5File::read_only(scratch / "one" / "checkpoint.h5"), b = io::H5File::read_only(scratch / "busy" / "checkpoint.h5");
+  ASSERT_EQ(bagnold(scratch,
+                    "run c.toml -o busy --quiet --set output.series_every=0.01 --set output.vtk_every=0.2 "
+                    "--set output.snapshot_every=0.2" +
+                        GetParam())
+                .exit_code,
+            0);
+  const auto a = io::H5File::read_only(scratch / "one" / "checkpoint.h5"),
+             b = io::H5File::read_only(scratch / "busy" / "checkpoint.h5");
   for (const char* name : {"x", "v", "omega", "force"}) {
     ASSERT_TRUE(a.exists(std::string("state/dem/") + name));
-    EXPECT_EQ(a.read<double>(std::string("state/dem/") + name), b.read<double>(std::string("state/dem/") + name)) << name;
+    EXPECT_EQ(a.read<double>(std::string("state/dem/") + name), b.read<double>(std::string("state/dem/") + name))
+        << name;
   }
 }
 
@@ -96,7 +102,8 @@ TEST_P(SameBits, InterruptedAndResumed) {
   write_text(scratch / "c.toml", tiny);
   const std::string longer = " --set time.end=25 --quiet" + GetParam();
   ASSERT_EQ(bagnold(scratch, "run c.toml -o whole" + longer).exit_code, 0);
-  const Outcome cut = bagnold(scratch, "run c.toml -o cut" + longer + " & pid=$!; sleep 0.3; kill -TERM $pid; wait $pid; exit $? #");
+  const Outcome cut =
+      bagnold(scratch, "run c.toml -o cut" + longer + " & pid=$!; sleep 0.3; kill -TERM $pid; wait $pid; exit $? #");
   ASSERT_EQ(cut.exit_code, 75) << cut.err;
   EXPECT_EQ(io::read_json(scratch / "cut" / "summary.json")["status"], "interrupted");
   const Outcome rest = bagnold(scratch, "resume cut --quiet");
@@ -153,24 +160,21 @@ TEST_P(Rejects, WithExitCode2AndAPlace) {
   EXPECT_FALSE(fs::exists(scratch / "a"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Input, Rejects, testing::Values(
-    BadInput{"contact.frictoin=0.5", "is 'friction' meant?"},
-    BadInput{"scenario.kind=\"shute\"", "is 'chute' meant?"},
-    BadInput{"contact.normal=\"hertzian\"", "is 'hertz' meant?"},
-    BadInput{"model=\"den\"", "is 'dem' meant?"},
-    BadInput{"contact.collision_time=-1", "expected > 0"},
-    BadInput{"contact.restitution=1.2", "out of range"},
-    BadInput{"contact.friction=-0.1", "expected >= 0"},
-    BadInput{"contact.stiffness=2e5", "either both of stiffness and damping"},
-    BadInput{"scenario.angle_deg=95", "out of range"},
-    BadInput{"scenario.fill_height=0", "expected > 0"},
-    BadInput{"scenario.fill_height=1e-3", "no grains"},
-    BadInput{"scenario.length=0.5", "scenario.length"},
-    BadInput{"time.step=0.005", "time.step"},
-    BadInput{"time.step=0", "expected > 0"},
-    BadInput{"time.end=\"soon\"", "expected a number"},
-    BadInput{"grains.density=-2", "expected > 0"},
-    BadInput{"seed=1.5", "expected an integer"}));
+INSTANTIATE_TEST_SUITE_P(
+    Input, Rejects,
+    testing::Values(BadInput{"contact.frictoin=0.5", "is 'friction' meant?"},
+                    BadInput{"scenario.kind=\"shute\"", "is 'chute' meant?"},
+                    BadInput{"contact.normal=\"hertzian\"", "is 'hertz' meant?"},
+                    BadInput{"model=\"den\"", "is 'dem' meant?"}, BadInput{"contact.collision_time=-1", "expected > 0"},
+                    BadInput{"contact.restitution=1.2", "out of range"},
+                    BadInput{"contact.friction=-0.1", "expected >= 0"},
+                    BadInput{"contact.stiffness=2e5", "either both of stiffness and damping"},
+                    BadInput{"scenario.angle_deg=95", "out of range"},
+                    BadInput{"scenario.fill_height=0", "expected > 0"},
+                    BadInput{"scenario.fill_height=1e-3", "no grains"},
+                    BadInput{"scenario.length=0.5", "scenario.length"}, BadInput{"time.step=0.005", "time.step"},
+                    BadInput{"time.step=0", "expected > 0"}, BadInput{"time.end=\"soon\"", "expected a number"},
+                    BadInput{"grains.density=-2", "expected > 0"}, BadInput{"seed=1.5", "expected an integer"}));
 
 TEST(Run, AsksForTheConventionOfTheDamping) {
   const Scratch scratch;
@@ -179,8 +183,11 @@ TEST(Run, AsksForTheConventionOfTheDamping) {
   write_text(scratch / "c.toml", text);
   const Outcome outcome = bagnold(scratch, "run c.toml -o a --quiet");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("c.toml:16:11: error: contact.damping: damping_convention is missing"), std::string::npos) << outcome.err;
-  EXPECT_EQ(bagnold(scratch, "run c.toml -o a --quiet --set contact.damping_convention=force --set time.end=0.1").exit_code, 0);
+  EXPECT_NE(outcome.err.find("c.toml:16:11: error: contact.damping: damping_convention is missing"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(
+      bagnold(scratch, "run c.toml -o a --quiet --set contact.damping_convention=force --set time.end=0.1").exit_code,
+      0);
 }
 
 TEST(Run, PrintsTheCollisionTimeOfEveryContactType) {
@@ -194,9 +201,12 @@ TEST(Run, PrintsTheCollisionTimeOfEveryContactType) {
 TEST(Run, CatchesOverlapsAtTheStart) {
   const Scratch scratch;
   const auto pair_at = [&](double distance) {
-    write_text(scratch / "c.toml", "model = \"dem\"\n[scenario]\nkind = \"grains\"\n"
-        "[[scenario.grains]]\nposition = [0, 0, 0]\n[[scenario.grains]]\nposition = [" + std::to_string(distance) + ", 0, 0]\n"
-        "[contact]\nstiffness = 2e5\ndamping = 25\ndamping_convention = \"force\"\n[time]\nend = 0.01\n");
+    write_text(scratch / "c.toml",
+               "model = \"dem\"\n[scenario]\nkind = \"grains\"\n"
+               "[[scenario.grains]]\nposition = [0, 0, 0]\n[[scenario.grains]]\nposition = [" +
+                   std::to_string(distance) +
+                   ", 0, 0]\n"
+                   "[contact]\nstiffness = 2e5\ndamping = 25\ndamping_convention = \"force\"\n[time]\nend = 0.01\n");
     return bagnold(scratch, "run c.toml -o a --quiet --overwrite");
   };
   for (const double distance : {0.9, 0.3, 0.0}) {

@@ -26,7 +26,9 @@ Result run_case(const std::string& name, const std::string& set) {
 const std::string small_chute = " --set scenario.length=8 --set scenario.width=6 --set scenario.fill_height=6";
 
 TEST(Cases, ChuteTomlFlowsWithoutLargeOverlaps) {
-  const Result r = run_case("chute.toml", small_chute + " --set scenario.angle_deg=27 --set cg.from=30 --set time.end=40 --set output.series_every=0.5");
+  const Result r = run_case(
+      "chute.toml",
+      small_chute + " --set scenario.angle_deg=27 --set cg.from=30 --set time.end=40 --set output.series_every=0.5");
   EXPECT_EQ(r.summary["status"], "completed");
   EXPECT_EQ(r.summary["grains"], 288);
   const auto &t = r.series["t"], &u = r.series["u_x"], &overlap = r.series["max_overlap_over_radius"];
@@ -38,7 +40,8 @@ TEST(Cases, ChuteTomlFlowsWithoutLargeOverlaps) {
 }
 
 TEST(Cases, ChuteTomlArrestsBelowItsStoppingAngle) {
-  const Result r = run_case("chute.toml", small_chute + " --set scenario.angle_deg=12 --set time.end=200 --set cg.from=100");
+  const Result r =
+      run_case("chute.toml", small_chute + " --set scenario.angle_deg=12 --set time.end=200 --set cg.from=100");
   EXPECT_EQ(r.summary["status"], "arrested");
   EXPECT_LT(r.summary["energy"]["ratio"], 1e-5);
 }
@@ -58,7 +61,9 @@ TEST(Cases, FlatBaseTomlSlipsAlongThePlane) {
 }
 
 TEST(Cases, SmoothBaseTomlRunsOverSmallGrains) {
-  const Result r = run_case("smooth-base.toml", " --set scenario.length=4 --set scenario.width=3 --set scenario.fill_height=6 --set time.end=20");
+  const Result r =
+      run_case("smooth-base.toml",
+               " --set scenario.length=4 --set scenario.width=3 --set scenario.fill_height=6 --set time.end=20");
   EXPECT_GT(r.summary["base_grains"], 60);
   EXPECT_GT(r.series["z_mean"].back(), 2.0);
   EXPECT_GT(r.series["u_x"].back(), 0.05);
@@ -78,7 +83,9 @@ TEST(Cases, TwoGrainsTomlKeepsItsEnergy) {
 }
 
 TEST(Cases, ColumnTomlSpreadsAndKeepsItsMass) {
-  const Result r = run_case("column.toml", "--set scenario.radius=0.016 --set scenario.height=0.016 --set scenario.length=0.08 --set time.end=0.2");
+  const Result r =
+      run_case("column.toml",
+               "--set scenario.radius=0.016 --set scenario.height=0.016 --set scenario.length=0.08 --set time.end=0.2");
   const auto& column = r.summary["column"];
   EXPECT_NEAR(column["aspect_ratio"], 1.0, 1e-12);
   EXPECT_GT(column["runout"], 0.2);
@@ -86,7 +93,9 @@ TEST(Cases, ColumnTomlSpreadsAndKeepsItsMass) {
 }
 
 TEST(Cases, HeapTomlStandsAtAnAngle) {
-  const Result r = run_case("heap.toml", "--set scenario.grains=150 --set scenario.radius=0.014 --set scenario.length=0.08 --set time.end=0.4");
+  const Result r =
+      run_case("heap.toml",
+               "--set scenario.grains=150 --set scenario.radius=0.014 --set scenario.length=0.08 --set time.end=0.4");
   const double slope = r.summary["heap"]["slope_deg"];
   EXPECT_GT(slope, 5);
   EXPECT_LT(slope, 45);

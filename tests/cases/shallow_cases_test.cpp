@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "io/csv.hpp"
 #include "io/json.hpp"
@@ -42,7 +42,8 @@ double at(const Layer& layer, const std::string& column, double x) {
 TEST(Cases, DamBreakInclineTomlMatchesTheExactSolution) {
   const Layer r = run_layer("dam-break-incline.toml");
   // h = (2 c0 - x/t + m t/2)^2 / (9 G), u = 2/3 (x/t + c0 + m t); Mangeney et al. 2000.
-  const double degree = std::numbers::pi / 180, G = std::cos(30 * degree), m = G * (std::tan(30 * degree) - std::tan(20 * degree));
+  const double degree = std::numbers::pi / 180, G = std::cos(30 * degree),
+               m = G * (std::tan(30 * degree) - std::tan(20 * degree));
   const double t = r.summary["time"], c0 = std::sqrt(10 * G);
   for (const double x : {-10.1, 0.1, 10.1, 20.1}) {
     const double root = 2 * c0 - x / t + 0.5 * m * t;
@@ -77,10 +78,11 @@ TEST(Cases, ContractionTomlDeepensTowardsTheNarrows) {
 }
 
 TEST(Cases, PileReleaseTomlStopsOnTheRunOut) {
-  const Layer r = run_layer("pile-release.toml", "--set scenario.cells=100 --set scenario.cells_across=40 --set output.vtk_every=100");
+  const Layer r = run_layer("pile-release.toml",
+                            "--set scenario.cells=100 --set scenario.cells_across=40 --set output.vtk_every=100");
   EXPECT_EQ(r.summary["status"], "arrested");
-  EXPECT_GT(r.summary["front"], 330);           // beyond the bend at 250 ... 330
-  EXPECT_EQ(r.series["speed_max"].back(), 0);   // and stays
+  EXPECT_GT(r.summary["front"], 330);          // beyond the bend at 250 ... 330
+  EXPECT_EQ(r.series["speed_max"].back(), 0);  // and stays
 }
 
 TEST(Cases, ValleyTomlRunsDownTheValley) {

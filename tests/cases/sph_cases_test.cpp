@@ -29,7 +29,8 @@ class ColumnToml : public testing::TestWithParam<int> {};
 
 TEST_P(ColumnToml, CollapsesOutwards) {
   // Rows of table 3 of Minatti & Paris: column-1.toml, column-2.toml, column-3.toml, column-4.toml, column-5.toml, column-6.toml.
-  const double aspect[] = {0.19, 0.55, 0.90, 1.60, 2.75, 3.00}, height[] = {0.0185, 0.0535, 0.0875, 0.1555, 0.2673, 0.2916};
+  const double aspect[] = {0.19, 0.55, 0.90, 1.60, 2.75, 3.00},
+               height[] = {0.0185, 0.0535, 0.0875, 0.1555, 0.2673, 0.2916};
   const auto k = static_cast<std::size_t>(GetParam() - 1);
   const std::string spacing = " --set scenario.spacing=" + std::to_string(k == 0 ? 0.0030 : 0.0081);
   const auto summary = run_continuum("column-" + std::to_string(GetParam()) + ".toml", "--set time.end=0.15" + spacing);

@@ -59,8 +59,8 @@ TEST(FlowAnalysis, RecoversABagnoldLayer) {
   EXPECT_NEAR(*f.base, 0, 1e-9);
   EXPECT_NEAR(*f.surface, h, 1e-9);
   EXPECT_NEAR(*f.h, h, 1e-9);
-  EXPECT_NEAR(*f.u_bar, 1.5, 1e-3);                                      // (3/5) u(h)
-  EXPECT_NEAR(*f.alpha, 1.25, 1e-3);                                     // Bagnold: 5/4
+  EXPECT_NEAR(*f.u_bar, 1.5, 1e-3);   // (3/5) u(h)
+  EXPECT_NEAR(*f.alpha, 1.25, 1e-3);  // Bagnold: 5/4
   EXPECT_NEAR(*f.froude, 1.5 / std::sqrt(h * std::cos(theta)), 1e-3);
   EXPECT_NEAR(*f.K, 1.06, 1e-12);
   EXPECT_NEAR(*f.mu_base, std::tan(theta), 1e-12);
@@ -74,9 +74,11 @@ TEST(FlowAnalysis, RecoversABagnoldLayer) {
 }
 
 TEST(FlowAnalysis, FindsLayers) {
-  const auto f = cg::analyse(layer(20, 1.0, 1, [](double) { return 1.0; }, 0.2), setting);
+  const auto f = cg::analyse(layer(
+                                 20, 1.0, 1, [](double) { return 1.0; }, 0.2),
+                             setting);
   const double k = 2 * std::numbers::pi / 0.9, damping = std::exp(-0.5 * k * k * 0.0625);
-  EXPECT_NEAR(*f.layering, 0.1 / damping, 0.02 / damping);               // half the relative amplitude, kernel undone
+  EXPECT_NEAR(*f.layering, 0.1 / damping, 0.02 / damping);  // half the relative amplitude, kernel undone
 }
 
 TEST(FlowAnalysis, WhatDoesNotExistIsNothing) {
@@ -110,7 +112,9 @@ struct Series {
       elastic.push_back(3);
     }
   }
-  cg::RegimeReport classify(std::optional<double> layering = 0.01) const { return cg::classify({t, kinetic, elastic}, layering); }
+  cg::RegimeReport classify(std::optional<double> layering = 0.01) const {
+    return cg::classify({t, kinetic, elastic}, layering);
+  }
 };
 
 }  // namespace
@@ -130,7 +134,7 @@ TEST(Regime, FollowsTheStatedCriteria) {
   const Series arrested(400, [](double t) { return t < 60 ? 20 * std::exp(-t / 3) : 1e-9; });
   EXPECT_EQ(arrested.classify().regime, cg::Regime::arrested);
   const Series slowing(400, [](double t) { return 100 * std::exp(-t / 100); });
-  EXPECT_EQ(slowing.classify().regime, std::nullopt);                    // neither: it has not stopped yet
+  EXPECT_EQ(slowing.classify().regime, std::nullopt);  // neither: it has not stopped yet
 }
 
 TEST(Regime, NeedsSamples) {
@@ -171,7 +175,7 @@ TEST(Blocks, HoldTheAverageThroughMergesAndGrowth) {
   for (std::uint64_t k = 0; k < 150; ++k) {
     auto s = instant(k % 7);
     s.time = 0.5 * static_cast<double>(k);
-    if (k == 40) s.x[3].z = 21;   // the profile grows on the way
+    if (k == 40) s.x[3].z = 21;  // the profile grows on the way
     cg::add_snapshot(moments, s.view(), scratch);
     merged.add(s.view());
     planned.add(s.view());
@@ -201,7 +205,8 @@ TEST(Blocks, OtherWidthsComeFromTheSameSums) {
 
 TEST(Blocks, StateIsExact) {
   const laws::CgKernels::Any kernel = laws::CgGaussian{0.3};
-  cg::BlockedProfile whole(kernel, 0.1, instant(0).box, 20), first(kernel, 0.1, instant(0).box, 20), second(kernel, 0.1, instant(0).box, 20);
+  cg::BlockedProfile whole(kernel, 0.1, instant(0).box, 20), first(kernel, 0.1, instant(0).box, 20),
+      second(kernel, 0.1, instant(0).box, 20);
   for (std::uint64_t k = 0; k < 20; ++k) whole.add(instant(k).view());
   for (std::uint64_t k = 0; k < 9; ++k) first.add(instant(k).view());
   const auto from = first.state("cg/"), to = second.state("cg/");
@@ -221,7 +226,8 @@ TEST(Blocks, ErrorsAreThoseOfIndependentSamples) {
   double sum = 0, square = 0;
   for (int k = 0; k < n; ++k) {
     auto s = instant(static_cast<std::uint64_t>(k));
-    const auto keep = static_cast<std::size_t>(200 + 100 * random::uniform(9, random::Stream::test, static_cast<std::uint64_t>(k)));
+    const auto keep =
+        static_cast<std::size_t>(200 + 100 * random::uniform(9, random::Stream::test, static_cast<std::uint64_t>(k)));
     s.contacts.resize(keep);
     blocks.add(s.view());
     const double per_grain = static_cast<double>(keep) / 120;

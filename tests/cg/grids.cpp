@@ -36,7 +36,8 @@ TEST(Grid, AveragingTheFinerGridGivesTheCoarser) {
   xyz.resolved[1] = true;
   xyz.count[1] = 30;
   xyz.spacing.y = 5.0 / 30;
-  const auto profile = sums_on(z, kernel, s), plane = sums_on(fine_xz, kernel, s), coarse_plane = sums_on(xz, kernel, s), space = sums_on(xyz, kernel, s);
+  const auto profile = sums_on(z, kernel, s), plane = sums_on(fine_xz, kernel, s),
+             coarse_plane = sums_on(xz, kernel, s), space = sums_on(xyz, kernel, s);
   for (std::size_t c = 0; c < cg::kChannels; ++c) {
     for (std::int64_t k = 0; k < z.count[2]; ++k) {
       double mean = 0;
@@ -46,7 +47,8 @@ TEST(Grid, AveragingTheFinerGridGivesTheCoarser) {
     for (std::int64_t k = 0; k < xz.count[2]; ++k)
       for (std::int64_t i = 0; i < xz.count[0]; ++i) {
         double mean = 0;
-        for (std::int64_t j = 0; j < 30; ++j) mean += space[static_cast<std::size_t>(i + xz.count[0] * (j + 30 * k))][c] / 30;
+        for (std::int64_t j = 0; j < 30; ++j)
+          mean += space[static_cast<std::size_t>(i + xz.count[0] * (j + 30 * k))][c] / 30;
         EXPECT_NEAR(mean, coarse_plane[static_cast<std::size_t>(i + xz.count[0] * k)][c], 1e-9) << c;
       }
   }
@@ -61,14 +63,16 @@ TEST(Grid, TheSeamOfThePeriodicBoxIsInvisible) {
     // Every grain moves by a whole number of nodes and wraps: fields shift with them.
     for (Vec3& x : s.x) x = wrap(s.box, x + Vec3{2 * grid.spacing.x, 3 * grid.spacing.y, 0});
     const auto after = sums_on(grid, kernel, s);
-    const bool jumps = std::string_view(kernel.name) == "heaviside";   // a node may sit on the edge of a ball
+    const bool jumps = std::string_view(kernel.name) == "heaviside";  // a node may sit on the edge of a ball
     for (std::int64_t k = 0; k < grid.count[2]; ++k)
       for (std::int64_t j = 0; j < grid.count[1]; ++j)
         for (std::int64_t i = 0; i < grid.count[0]; ++i) {
-          const std::int64_t to = (i + 2) % grid.count[0] + grid.count[0] * ((j + 3) % grid.count[1] + grid.count[1] * k);
+          const std::int64_t to =
+              (i + 2) % grid.count[0] + grid.count[0] * ((j + 3) % grid.count[1] + grid.count[1] * k);
           const std::int64_t from = i + grid.count[0] * (j + grid.count[1] * k);
           for (std::size_t c = 0; c < cg::kChannels; ++c)
-            EXPECT_NEAR(after[static_cast<std::size_t>(to)][c], before[static_cast<std::size_t>(from)][c], jumps ? 1e-9 : 1e-11);
+            EXPECT_NEAR(after[static_cast<std::size_t>(to)][c], before[static_cast<std::size_t>(from)][c],
+                        jumps ? 1e-9 : 1e-11);
         }
   });
 }
@@ -86,14 +90,17 @@ TEST(Grid, MomentumBalanceHoldsInThreeDimensions) {
   const double h = 0.02;
   double peak = 0, worst = 0;
   for (Vec3 r : {Vec3{1.2, 2.1, 0.3}, Vec3{3.3, 0.1, 1.7}, Vec3{5.9, 4.8, 4.4}, Vec3{0.4, 3.3, 6.1}}) {
-    const cg::Grid patch{.resolved = {true, true, true}, .count = {5, 5, 5}, .origin = r - Vec3{2 * h, 2 * h, 2 * h}, .spacing = {h, h, h}};
+    const cg::Grid patch{.resolved = {true, true, true},
+                         .count = {5, 5, 5},
+                         .origin = r - Vec3{2 * h, 2 * h, 2 * h},
+                         .spacing = {h, h, h}};
     const auto sums = sums_on(patch, gaussian, s);
     for (std::size_t a = 0; a < 3; ++a) {
       double divergence = 0;
       for (std::size_t b = 0; b < 3; ++b) {
         const std::int64_t stride = b == 0 ? 1 : b == 1 ? 5 : 25;
         const auto at = [&](std::int64_t o) {
-          const cg::Row& row = sums[static_cast<std::size_t>(62 + o * stride)];   // 62: the middle
+          const cg::Row& row = sums[static_cast<std::size_t>(62 + o * stride)];  // 62: the middle
           return row[cg::kContact + 3 * a + b] + row[cg::kBase + 3 * a + b];
         };
         divergence += (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
@@ -102,12 +109,13 @@ TEST(Grid, MomentumBalanceHoldsInThreeDimensions) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(s.flowing); ++i)
         for (int p = -1; p <= 1; ++p)
           for (int q = -1; q <= 1; ++q)
-            carried += force[i][static_cast<int>(a)] * gaussian.density(norm2(r - s.x[i] - Vec3{p * 6.0, q * 5.0, 0}), 3);
+            carried +=
+                force[i][static_cast<int>(a)] * gaussian.density(norm2(r - s.x[i] - Vec3{p * 6.0, q * 5.0, 0}), 3);
       peak = std::max(peak, std::abs(carried));
       worst = std::max(worst, std::abs(divergence - carried));
     }
   }
-  EXPECT_LT(worst, 1e-5 * peak);   // fourth-order differences
+  EXPECT_LT(worst, 1e-5 * peak);  // fourth-order differences
 }
 
 TEST(Grid, DoesNotDependOnThreads) {
@@ -139,7 +147,7 @@ cg::StoredSnapshot simple_shear() {
     const auto u = [&](std::uint32_t k) { return test::random_number(5, static_cast<std::uint64_t>(i), k, -1, 1); };
     const double z = 8 * (i + 0.5) / n;
     s.x.push_back({4 + 4 * u(0), 4 + 4 * u(1), z});
-    s.v.push_back(Vec3{0.7 * z, 0, 0} + 0.3 * Vec3{u(2), u(3), u(4)});   // variance 0.03 each
+    s.v.push_back(Vec3{0.7 * z, 0, 0} + 0.3 * Vec3{u(2), u(3), u(4)});  // variance 0.03 each
     s.omega.push_back({0, 0.35, 0});
     s.diameter.push_back(0.3);
     s.mass.push_back(0.027);

@@ -14,7 +14,9 @@ inline double random_number(std::uint64_t seed, std::uint64_t item, std::uint32_
 }
 
 inline cg::StoredSnapshot random_packing(std::uint64_t seed, int flowing = 120, int base = 30, int contacts = 300) {
-  const auto u = [&](std::uint64_t item, std::uint32_t draw, double lo, double hi) { return random_number(seed, item, draw, lo, hi); };
+  const auto u = [&](std::uint64_t item, std::uint32_t draw, double lo, double hi) {
+    return random_number(seed, item, draw, lo, hi);
+  };
   cg::StoredSnapshot s;
   s.box = {.origin = {0, 0, 0}, .length = {6, 5, 8}, .periodic = {true, true, false}};
   s.flowing = flowing;
@@ -34,7 +36,8 @@ inline cg::StoredSnapshot random_packing(std::uint64_t seed, int flowing = 120, 
     const bool with_base = c % 4 == 0;
     dem::Contact contact;
     contact.i = static_cast<std::int32_t>(u(item, 0, 0, flowing));
-    contact.j = with_base ? flowing + static_cast<std::int32_t>(u(item, 1, 0, base)) : static_cast<std::int32_t>(u(item, 1, 0, flowing));
+    contact.j = with_base ? flowing + static_cast<std::int32_t>(u(item, 1, 0, base))
+                          : static_cast<std::int32_t>(u(item, 1, 0, flowing));
     if (contact.j == contact.i) contact.j = (contact.i + 1) % flowing;
     if (c % 37 == 0) contact.j = -1;
     // A direction on the sphere; z of both signs, a few exactly or nearly level.
@@ -44,8 +47,10 @@ inline cg::StoredSnapshot random_packing(std::uint64_t seed, int flowing = 120, 
     const double phi = u(item, 3, 0, 6.283185307179586), s_xy = std::sqrt(1 - nz * nz);
     contact.normal = {s_xy * std::cos(phi), s_xy * std::sin(phi), nz};
     contact.overlap = u(item, 4, 0.001, 0.05);
-    const double radii = contact.j < 0 ? 0.5 * s.diameter[static_cast<std::size_t>(contact.i)]
-                                       : 0.5 * (s.diameter[static_cast<std::size_t>(contact.i)] + s.diameter[static_cast<std::size_t>(contact.j)]);
+    const double radii =
+        contact.j < 0
+            ? 0.5 * s.diameter[static_cast<std::size_t>(contact.i)]
+            : 0.5 * (s.diameter[static_cast<std::size_t>(contact.i)] + s.diameter[static_cast<std::size_t>(contact.j)]);
     contact.branch = (radii - contact.overlap) * contact.normal;
     contact.force = {u(item, 5, -1, 1), u(item, 6, -1, 1), u(item, 7, -1, 3)};
     s.contacts.push_back(contact);

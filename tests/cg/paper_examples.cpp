@@ -44,7 +44,8 @@ void on_figure_1(bool lower_is_fixed, Check check) {
   cg::ProfileScratch scratch;
   cg::add_snapshot(moments, s.view(), scratch);
   const cg::ProfileSums sums = cg::evaluate(moments, -60, 121);
-  for (std::size_t n = 0; n < sums.value.size(); ++n) check(moments.lattice.node(-60 + static_cast<std::int64_t>(n)), w, sums.value[n], sums.slope[n]);
+  for (std::size_t n = 0; n < sums.value.size(); ++n)
+    check(moments.lattice.node(-60 + static_cast<std::int64_t>(n)), w, sums.value[n], sums.slope[n]);
 }
 
 double gauss(double z, double w) { return std::exp(-z * z / (2 * w * w)) / (std::sqrt(2 * std::numbers::pi) * w); }
@@ -54,7 +55,7 @@ double gauss(double z, double w) { return std::exp(-z * z / (2 * w * w)) / (std:
 TEST(Figure1, BothFlowing) {
   on_figure_1(false, [](double z, double w, const cg::Row& value, const cg::Row& slope) {
     EXPECT_NEAR(value[cg::kMass], gauss(z - 1, w) + gauss(z + 1, w), 1e-11);
-    const double stress = -(phi((z + 1) / w) - phi((z - 1) / w));   // along the contact line
+    const double stress = -(phi((z + 1) / w) - phi((z - 1) / w));  // along the contact line
     EXPECT_NEAR(value[cg::kContact + 8] + value[cg::kBase + 8], stress, 1e-11);
     EXPECT_NEAR(slope[cg::kContact + 8], gauss(z - 1, w) - gauss(z + 1, w), 1e-10);
   });
@@ -63,7 +64,7 @@ TEST(Figure1, BothFlowing) {
 TEST(Figure1, LowerFixed) {
   on_figure_1(true, [](double z, double w, const cg::Row& value, const cg::Row& slope) {
     EXPECT_NEAR(value[cg::kMass], gauss(z - 1, w), 1e-11);
-    const double stress = -(1 - phi((z - 1) / w));   // from the flowing grain to minus infinity
+    const double stress = -(1 - phi((z - 1) / w));  // from the flowing grain to minus infinity
     EXPECT_NEAR(value[cg::kContact + 8] + value[cg::kBase + 8], stress, 1e-11);
     EXPECT_NEAR(slope[cg::kBase + 8], gauss(z - 1, w), 1e-10);
   });
@@ -77,7 +78,9 @@ struct BruteForce {
   const cg::StoredSnapshot& s;
   double w;
 
-  double W(const Vec3& r) const { return std::exp(-norm2(r) / (2 * w * w)) / std::pow(std::sqrt(2 * std::numbers::pi) * w, 3); }
+  double W(const Vec3& r) const {
+    return std::exp(-norm2(r) / (2 * w * w)) / std::pow(std::sqrt(2 * std::numbers::pi) * w, 3);
+  }
 
   template <class F>
   void images(F f) const {
@@ -109,7 +112,8 @@ struct BruteForce {
       for (std::size_t a = 0; a < 3; ++a) {
         out[cg::kMomentum + a] += s.mass[i] * s.v[i][static_cast<int>(a)] * weight;
         for (std::size_t b = a; b < 3; ++b)
-          out[cg::kFlux + cg::symmetric(a, b)] += s.mass[i] * s.v[i][static_cast<int>(a)] * s.v[i][static_cast<int>(b)] * weight;
+          out[cg::kFlux + cg::symmetric(a, b)] +=
+              s.mass[i] * s.v[i][static_cast<int>(a)] * s.v[i][static_cast<int>(b)] * weight;
       }
     }
     for (const dem::Contact& c : s.contacts) {
@@ -117,14 +121,15 @@ struct BruteForce {
       const auto add = [&](std::size_t channel, const Vec3& from, const Vec3& branch, double length) {
         const double mean = line(r, from, branch, length);
         for (std::size_t a = 0; a < 3; ++a)
-          for (std::size_t b = 0; b < 3; ++b) out[channel + 3 * a + b] -= c.force[static_cast<int>(a)] * branch[static_cast<int>(b)] * mean;
+          for (std::size_t b = 0; b < 3; ++b)
+            out[channel + 3 * a + b] -= c.force[static_cast<int>(a)] * branch[static_cast<int>(b)] * mean;
       };
       if (c.j >= 0 && c.j < s.flowing) {
         add(cg::kContact, x, c.branch, 1);
       } else {
         const Vec3 arm = (0.5 * (s.diameter[static_cast<std::size_t>(c.i)] - c.overlap)) * c.normal;
         add(cg::kBase, x, arm, 1);
-        add(cg::kBase, x - arm, {0, 0, 1}, 15);   // straight down, far enough
+        add(cg::kBase, x - arm, {0, 0, 1}, 15);  // straight down, far enough
       }
     }
     return out;
@@ -136,7 +141,8 @@ struct BruteForce {
 TEST(Equation32, ThreeDimensionalFieldsMatchQuadrature) {
   const auto s = test::random_packing(11, 25, 6, 60);
   const double w = 0.35;
-  const cg::Grid grid{.resolved = {true, true, true}, .count = {3, 3, 4}, .origin = {0.1, 0.2, -0.4}, .spacing = {1.9, 1.7, 2.3}};
+  const cg::Grid grid{
+      .resolved = {true, true, true}, .count = {3, 3, 4}, .origin = {0.1, 0.2, -0.4}, .spacing = {1.9, 1.7, 2.3}};
   std::vector<cg::Row> sums;
   cg::add_snapshot(sums, grid, laws::CgGaussian{w}, s.view());
   const BruteForce exact{s, w};
@@ -145,7 +151,8 @@ TEST(Equation32, ThreeDimensionalFieldsMatchQuadrature) {
     const cg::Row expected = exact.at(grid.node(n));
     for (std::size_t c = 0; c < cg::kChannels; ++c) {
       peak[c] = std::max(peak[c], std::abs(expected[c]));
-      if (c < cg::kVolume || c >= cg::kContact) worst[c] = std::max(worst[c], std::abs(sums[static_cast<std::size_t>(n)][c] - expected[c]));
+      if (c < cg::kVolume || c >= cg::kContact)
+        worst[c] = std::max(worst[c], std::abs(sums[static_cast<std::size_t>(n)][c] - expected[c]));
     }
   }
   for (std::size_t c = 0; c < cg::kChannels; ++c) EXPECT_LE(worst[c], 2e-6 * peak[c]) << "channel " << c;
@@ -176,9 +183,13 @@ TEST(Equation32, ProfilesAgreeWithRaysToInfinityWhereTheBaseIsBelow) {
       const int panels = 600;
       double ray = 0;
       for (int k = 0; k <= 2 * panels; ++k)
-        ray += (k == 0 || k == 2 * panels ? 1 : k % 2 == 1 ? 4 : 2) * far / (6 * panels) * gauss(z - z_i + 0.5 * far / panels * k * c.branch.z, 0.3);
+        ray += (k == 0 || k == 2 * panels ? 1
+                : k % 2 == 1              ? 4
+                                          : 2) *
+               far / (6 * panels) * gauss(z - z_i + 0.5 * far / panels * k * c.branch.z, 0.3);
       literal -= (c.branch.z * ray / 30) * c.force;
     }
-    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(sums.value[n][cg::kBase + 3 * a + 2], literal[static_cast<int>(a)], 1e-8);
+    for (std::size_t a = 0; a < 3; ++a)
+      EXPECT_NEAR(sums.value[n][cg::kBase + 3 * a + 2], literal[static_cast<int>(a)], 1e-8);
   }
 }

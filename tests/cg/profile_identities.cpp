@@ -19,8 +19,8 @@ struct Profile {
   std::size_t size() const { return sums.value.size(); }
 };
 
-Profile profile_of(const std::vector<cg::StoredSnapshot>& snapshots, const laws::CgKernels::Any& kernel, bool averaged = false,
-                   double spacing = 0.1, double origin = 0) {
+Profile profile_of(const std::vector<cg::StoredSnapshot>& snapshots, const laws::CgKernels::Any& kernel,
+                   bool averaged = false, double spacing = 0.1, double origin = 0) {
   auto moments = cg::make_moments(kernel, cg::make_lattice(kernel, spacing, origin), snapshots[0].box);
   cg::ProfileScratch scratch;
   for (const auto& s : snapshots) cg::add_snapshot(moments, s.view(), scratch);
@@ -132,7 +132,7 @@ TEST(Profile, JumpAcrossTheDepthIsTheBaseForce) {
       Vec3 base{};
       for (const auto& s : snapshots)
         for (const auto& c : s.contacts)
-          if (c.j < 0 || c.j >= s.flowing) base -= c.force;   // on the base
+          if (c.j < 0 || c.j >= s.flowing) base -= c.force;  // on the base
       for (std::size_t k = 0; k < 9; ++k) {
         EXPECT_NEAR(p.sums.value.back()[cg::kContact + k], 0, 1e-12);
         EXPECT_NEAR(p.sums.value.back()[cg::kBase + k], 0, 1e-12);
@@ -140,7 +140,7 @@ TEST(Profile, JumpAcrossTheDepthIsTheBaseForce) {
       }
       for (std::size_t a = 0; a < 3; ++a) {
         EXPECT_NEAR(p.sums.value.front()[cg::kBase + 3 * a + 2], base[static_cast<int>(a)] / 30, 1e-12);
-        EXPECT_NEAR(p.sums.value.front()[cg::kBase + 3 * a], 0, 1e-12);   // sigma_ax ends at the contact point
+        EXPECT_NEAR(p.sums.value.front()[cg::kBase + 3 * a], 0, 1e-12);  // sigma_ax ends at the contact point
       }
     }
   });

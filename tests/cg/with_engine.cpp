@@ -34,7 +34,8 @@ dem::DemState small_chute(double dt) {
   for (int k = 0; k < 5; ++k)
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 4; ++i, ++item)
-        add({i + 0.5 + 0.01 * u(0), j + 0.5 + 0.01 * u(1), k + 0.45 + 0.01 * u(2)}, {1 + u(3), u(4), u(5)}, 0.98 + 0.015 * u(6));
+        add({i + 0.5 + 0.01 * u(0), j + 0.5 + 0.01 * u(1), k + 0.45 + 0.01 * u(2)}, {1 + u(3), u(4), u(5)},
+            0.98 + 0.015 * u(6));
   s.grains.flowing = static_cast<std::int64_t>(item);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i, ++item) add({i + 0.4 + 0.1 * u(0), j + 0.6 + 0.1 * u(1), -0.45 + 0.1 * u(2)}, {}, 1);
@@ -104,7 +105,8 @@ double momentum_error(double dt) {
   for (std::size_t n = 0; n < now.value.size(); ++n)
     for (std::size_t a = 0; a < 3; ++a) {
       const double rate = (after.value[n][cg::kMomentum + a] - before.value[n][cg::kMomentum + a]) / (2 * dt);
-      const double balance = now.slope[n][cg::kContact + 3 * a + 2] + now.slope[n][cg::kBase + 3 * a + 2] - now.slope[n][cg::kFlux + cg::symmetric(a, 2)] +
+      const double balance = now.slope[n][cg::kContact + 3 * a + 2] + now.slope[n][cg::kBase + 3 * a + 2] -
+                             now.slope[n][cg::kFlux + cg::symmetric(a, 2)] +
                              now.value[n][cg::kMass] * s.gravity[static_cast<int>(a)];
       peak = std::max(peak, std::abs(balance));
       worst = std::max(worst, std::abs(rate - balance));
@@ -146,7 +148,8 @@ TEST(WithEngine, LookingChangesNothing) {
   dem::DemState alone = small_chute(2e-4), watched = small_chute(2e-4);
   dem::prepare(alone, laws);
   dem::prepare(watched, laws);
-  cg::ProfileObserver observer({.kernel = laws::CgGaussian{}, .first_step = 100, .last_step = 900, .every = 25}, watched.box);
+  cg::ProfileObserver observer({.kernel = laws::CgGaussian{}, .first_step = 100, .last_step = 900, .every = 25},
+                               watched.box);
   dem::advance(alone, laws, 1000);
   for (int k = 0; k < 1000; ++k) {
     dem::advance(watched, laws, 1);
@@ -163,7 +166,8 @@ TEST(WithEngine, LookingChangesNothing) {
 }
 
 TEST(WithEngine, SampleStepsAreThoseAskedFor) {
-  const cg::ProfileObserver observer({.kernel = laws::CgGaussian{}, .first_step = 100, .last_step = 900, .every = 25}, small_chute(1e-4).box);
+  const cg::ProfileObserver observer({.kernel = laws::CgGaussian{}, .first_step = 100, .last_step = 900, .every = 25},
+                                     small_chute(1e-4).box);
   EXPECT_EQ(observer.next_step(0), 100);
   EXPECT_EQ(observer.next_step(99), 100);
   EXPECT_EQ(observer.next_step(100), 125);

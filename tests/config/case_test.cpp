@@ -25,7 +25,9 @@ struct Material {
 struct Soft {
   static constexpr std::string_view name = "soft";
   double stiffness = 1;
-  static constexpr auto fields() { return std::tuple{field("stiffness", "N/m", "spring", &Soft::stiffness, positive())}; }
+  static constexpr auto fields() {
+    return std::tuple{field("stiffness", "N/m", "spring", &Soft::stiffness, positive())};
+  }
 };
 struct Hard {
   static constexpr std::string_view name = "hard";
@@ -60,7 +62,8 @@ TEST(Case, ReadsEveryTypeOfField) {
 }
 
 TEST(Case, ResolvedTextReadsBackTheSame) {
-  const Case first = Case::from_text("[material]\ndensity = 0.1\n[contact]\nlaw = \"hard\"\n", "c.toml", {"material.step=3.3333333333333335e-05"});
+  const Case first = Case::from_text("[material]\ndensity = 0.1\n[contact]\nlaw = \"hard\"\n", "c.toml",
+                                     {"material.step=3.3333333333333335e-05"});
   const auto a = first.root().child("material").read<Material>();
   (void)first.root().child("contact").read_law<Laws>("law", std::nullopt);
   const Case second = Case::from_text(first.resolved(), "resolved");
@@ -90,29 +93,32 @@ TEST(Case, RangeAndTypeErrors) {
             "c.toml:2:11: error: material.density = nan is out of range, expected > 0 [kg/m^3]");
   EXPECT_EQ(error_of("[material]\ndensity = \"a\"\n", read_material),
             "c.toml:2:11: error: material.density: expected a number [kg/m^3], found a string");
-  EXPECT_NE(error_of("[material]\ndensity = 1\ngravity = [1, 2]\n", read_material).find("three numbers"), std::string::npos);
-  EXPECT_NE(error_of("[material]\ndensity = 1\ncount = 2.5\n", read_material).find("expected an integer"), std::string::npos);
+  EXPECT_NE(error_of("[material]\ndensity = 1\ngravity = [1, 2]\n", read_material).find("three numbers"),
+            std::string::npos);
+  EXPECT_NE(error_of("[material]\ndensity = 1\ncount = 2.5\n", read_material).find("expected an integer"),
+            std::string::npos);
   EXPECT_NE(error_of("material = 3\n", read_material).find("expected a table, found an integer"), std::string::npos);
 }
 
 TEST(Case, UnknownLawNamesNearest) {
   const std::string error = error_of("[contact]\nlaw = \"sfot\"\n", read_law);
-  EXPECT_EQ(error, "c.toml:2:7: error: contact.law: unknown value 'sfot', expected one of soft, hard; is 'soft' meant?");
+  EXPECT_EQ(error,
+            "c.toml:2:7: error: contact.law: unknown value 'sfot', expected one of soft, hard; is 'soft' meant?");
 }
 
 TEST(Case, ParametersOfAnotherLawAreUnknown) {
-  EXPECT_NE(error_of("[contact]\nlaw = \"hard\"\nstiffness = 2\n", read_law).find("contact.stiffness: unknown key"), std::string::npos);
+  EXPECT_NE(error_of("[contact]\nlaw = \"hard\"\nstiffness = 2\n", read_law).find("contact.stiffness: unknown key"),
+            std::string::npos);
 }
 
-TEST(Case, SyntaxErrorHasLineAndColumn) {
-  EXPECT_EQ(error_of("a = 1\nb = = 2\n", read_law).rfind("c.toml:2:", 0), 0u);
-}
+TEST(Case, SyntaxErrorHasLineAndColumn) { EXPECT_EQ(error_of("a = 1\nb = = 2\n", read_law).rfind("c.toml:2:", 0), 0u); }
 
 TEST(Case, OverridesReplaceAddAndNameThemselves) {
   const Case input = Case::from_text("[material]\ndensity = 1\n", "c.toml", {"material.density=5", "contact.law=hard"});
   EXPECT_EQ(input.root().child("material").read<Material>().density, 5.0);
   EXPECT_EQ(name_of(input.root().child("contact").read_law<Laws>("law", "soft")), "hard");
-  EXPECT_EQ(error_of("", read_law, {"contact.lwa=hard"}), "--set contact.lwa=hard: error: contact.lwa: unknown key, is 'law' meant?");
+  EXPECT_EQ(error_of("", read_law, {"contact.lwa=hard"}),
+            "--set contact.lwa=hard: error: contact.lwa: unknown key, is 'law' meant?");
   EXPECT_NE(error_of("", read_law, {"contact"}).find("expected key.path=value"), std::string::npos);
 }
 

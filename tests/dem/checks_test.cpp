@@ -36,7 +36,7 @@ TEST(ContactTypes, ListEveryPairOfSpeciesThatCanMeetAtItsOwnMass) {
   EXPECT_DOUBLE_EQ(types[2].reduced_mass, 1);
   EXPECT_NEAR(types[0].tc, 0.005, 1e-15);
   EXPECT_NEAR(types[0].restitution, 0.88, 1e-13);
-  EXPECT_NEAR(types[0].kn, 2e5, 3e3);        // the paper's rounded constants
+  EXPECT_NEAR(types[0].kn, 2e5, 3e3);  // the paper's rounded constants
   EXPECT_NEAR(types[0].gamma_n, 25, 0.6);
   EXPECT_DOUBLE_EQ(types[0].kt, 2 * types[0].kn / 7);
   EXPECT_DOUBLE_EQ(types[0].gamma_t, types[0].gamma_n);
@@ -46,7 +46,8 @@ TEST(ContactTypes, ListEveryPairOfSpeciesThatCanMeetAtItsOwnMass) {
 TEST(ContactTypes, PerReducedMassDampingIsTwiceThePaperConstant) {
   laws::Linear law = testing::linear(2e5, 50);
   law.damping_convention = "per_reduced_mass";
-  const auto model = uniform_model({"grain", "base", "floor"}, {law, laws::LinearHistory{}, laws::NoRollingResistance{}});
+  const auto model =
+      uniform_model({"grain", "base", "floor"}, {law, laws::LinearHistory{}, laws::NoRollingResistance{}});
   const auto types = contact_types(chute_like(), model);
   EXPECT_DOUBLE_EQ(types[0].gamma_n, 25);
   EXPECT_DOUBLE_EQ(types[0].gamma_t, 25);
@@ -57,7 +58,8 @@ TEST(Species, EachPairActsWithItsOwnConstants) {
   ContactModel model = by_collision(0.005, 0.88);
   for (std::int32_t a = 0; a < 3; ++a)
     for (std::int32_t b = a; b < 3; ++b)
-      set_pair(model, a, b, {testing::linear(1000 * (1 + a + 3 * b), 0), laws::LinearHistory{}, laws::NoRollingResistance{}});
+      set_pair(model, a, b,
+               {testing::linear(1000 * (1 + a + 3 * b), 0), laws::LinearHistory{}, laws::NoRollingResistance{}});
   const ContactLaws laws = compile(model, 0.5);
   const auto force = [&](std::int32_t a, std::int32_t b) {  // b == 2: the wall
     DemState s;

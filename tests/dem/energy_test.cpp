@@ -53,8 +53,8 @@ TEST(Figure15, EnergyIsKeptWithoutDissipationAndSliding) {
     most_tangential = std::max(most_tangential, energies(s, laws).tangential_spring);
   }
   ASSERT_TRUE(contacts(s, laws).empty());
-  EXPECT_GT(most_tangential, 0.01 * first);       // the collision is oblique
-  EXPECT_GT(s.ledger.opened, 1e-2 * first);       // the jump at the end of contact: internal energy
+  EXPECT_GT(most_tangential, 0.01 * first);  // the collision is oblique
+  EXPECT_GT(s.ledger.opened, 1e-2 * first);  // the jump at the end of contact: internal energy
   EXPECT_EQ(s.ledger.sliding, 0);
   EXPECT_EQ(lost(s.ledger), s.ledger.opened);
   EXPECT_LT(std::abs(energies(s, laws).total() + lost(s.ledger) - first), 1e-3 * first);

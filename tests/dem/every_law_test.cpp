@@ -54,7 +54,8 @@ double random_in(double lo, double hi, std::uint64_t item, std::uint32_t draw) {
   return lo + (hi - lo) * random::uniform(77, random::Stream::test, item, draw);
 }
 Vec3 random_vector(double size, std::uint64_t item, std::uint32_t draw) {
-  return {random_in(-size, size, item, draw), random_in(-size, size, item, draw + 1), random_in(-size, size, item, draw + 2)};
+  return {random_in(-size, size, item, draw), random_in(-size, size, item, draw + 1),
+          random_in(-size, size, item, draw + 2)};
 }
 
 // Two unlike grains about to meet, seen so that the speed of approach is `approach`.
@@ -64,7 +65,8 @@ DemState about_to_meet(std::uint64_t item, double approach, double dt) {
   Vec3 n = random_vector(1, item, 0);
   n *= 1 / norm(n);
   const double d1 = random_in(0.6, 1, item, 4), d2 = random_in(0.6, 1, item, 5);
-  testing::add_grain(s, 0.5 * (d1 + d2) * (1 + 1e-9) * n, random_vector(1.5 * approach, item, 6), random_vector(4 * approach, item, 9), d1);
+  testing::add_grain(s, 0.5 * (d1 + d2) * (1 + 1e-9) * n, random_vector(1.5 * approach, item, 6),
+                     random_vector(4 * approach, item, 9), d1);
   testing::add_grain(s, {}, {}, random_vector(4 * approach, item, 12), d2);
   s.grains.v[0] += (-approach - dot(s.grains.v[0], n)) * n;
   return s;
@@ -118,7 +120,8 @@ TEST(EveryLaw, ReboundsHeadOnWithTheRestitutionItClaims) {
       s.grains.omega[0] = s.grains.omega[1] = {};
       collide(s, laws);
       const double rebound = dot(full_step_velocity(s, 0) - full_step_velocity(s, 1), n) / speed;
-      const double claimed = with_laws(laws, [&](const auto& t) { return t.of(0, 0).normal.collision(size_of(s)).restitution; });
+      const double claimed =
+          with_laws(laws, [&](const auto& t) { return t.of(0, 0).normal.collision(size_of(s)).restitution; });
       EXPECT_NEAR(rebound, claimed, 2e-3) << name << " at speed " << speed;
       EXPECT_LT(claimed, 0.95);
     }

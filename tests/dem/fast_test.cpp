@@ -48,9 +48,14 @@ std::vector<Mixture> mixtures() {
   other.normal = linear(1e5, 10);
   set_pair(two, 0, 1, other);
   const auto one = [](const PairParameters& p) { return compile(uniform_model({"grain"}, p), 0.5); };
-  return {{"paper", 0, one(paper)},          {"polydisperse", 0.4, one(paper)}, {"hertz", 0, one(hertz_mindlin())},
-          {"hertz polydisperse", 0.4, one(hertz_mindlin())}, {"rolling", 0.3, one(rolling)},
-          {"per mass", 0.3, one(per_mass)},  {"hertz rolling", 0, one(hertz_rolling)}, {"species", 0.2, compile(two, 0.5), 2}};
+  return {{"paper", 0, one(paper)},
+          {"polydisperse", 0.4, one(paper)},
+          {"hertz", 0, one(hertz_mindlin())},
+          {"hertz polydisperse", 0.4, one(hertz_mindlin())},
+          {"rolling", 0.3, one(rolling)},
+          {"per mass", 0.3, one(per_mass)},
+          {"hertz rolling", 0, one(hertz_rolling)},
+          {"species", 0.2, compile(two, 0.5), 2}};
 }
 
 // Grains shaken in a periodic box, some of them fixed, driven by an oblique gravity.

@@ -13,8 +13,8 @@
 
 namespace bagnold::dem::testing {
 
-inline void add_grain(DemState& s, Vec3 x, Vec3 v = {}, Vec3 omega = {}, double d = 1, double density = 6 / std::numbers::pi,
-                      std::int32_t species = 0) {
+inline void add_grain(DemState& s, Vec3 x, Vec3 v = {}, Vec3 omega = {}, double d = 1,
+                      double density = 6 / std::numbers::pi, std::int32_t species = 0) {
   Grains& g = s.grains;
   g.x.push_back(x);
   g.v.push_back(v);
@@ -45,7 +45,9 @@ inline ContactLaws paper_laws(double gamma = 25, double mu = 0.5) {
 // a perturbed cubic lattice with random diameters and velocities.
 inline DemState random_packing(std::int64_t per_side, double spacing, std::uint64_t seed, double size_spread = 0.3) {
   DemState s;
-  s.box = {.origin = {-1, 2, 0}, .length = Vec3{1, 1, 1} * (spacing * static_cast<double>(per_side)), .periodic = {true, true, true}};
+  s.box = {.origin = {-1, 2, 0},
+           .length = Vec3{1, 1, 1} * (spacing * static_cast<double>(per_side)),
+           .periodic = {true, true, true}};
   std::uint64_t item = 0;
   const auto u = [&](std::uint32_t draw) { return 2 * random::uniform(seed, random::Stream::test, item, draw) - 1; };
   for (std::int64_t a = 0; a < per_side; ++a)

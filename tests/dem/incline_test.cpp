@@ -12,7 +12,8 @@ double acceleration(double angle, double mu, bool tilt_the_plane, Vec3& spin) {
   DemState s;
   s.dt = 1e-4;
   const double sn = std::sin(angle), cs = std::cos(angle);
-  const Vec3 normal = tilt_the_plane ? Vec3{sn, 0, cs} : Vec3{0, 0, 1}, along = tilt_the_plane ? Vec3{cs, 0, -sn} : Vec3{1, 0, 0};
+  const Vec3 normal = tilt_the_plane ? Vec3{sn, 0, cs} : Vec3{0, 0, 1},
+             along = tilt_the_plane ? Vec3{cs, 0, -sn} : Vec3{1, 0, 0};
   s.gravity = tilt_the_plane ? Vec3{0, 0, -1} : Vec3{sn, 0, -cs};
   s.walls = {{{0.3, 0, 0.2}, normal, 0}};
   add_grain(s, s.walls[0].point + (0.5 - cs / 2e5) * normal);

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "dem/contacts.hpp"
-#include "laws/contact/pair.hpp"
 #include "helpers.hpp"
+#include "laws/contact/pair.hpp"
 
 namespace bagnold::dem {
 namespace {
@@ -60,7 +60,8 @@ Pair rate(const Bodies& b, const Pair& s) {
 Pair reference_collision(const Bodies& b, Pair s) {
   const double h = tc / 20000;
   do {
-    const Pair k1 = rate(b, s), k2 = rate(b, s + 0.5 * h * k1), k3 = rate(b, s + 0.5 * h * k2), k4 = rate(b, s + h * k3);
+    const Pair k1 = rate(b, s), k2 = rate(b, s + 0.5 * h * k1), k3 = rate(b, s + 0.5 * h * k2),
+               k4 = rate(b, s + h * k3);
     s = s + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
     s.spring = acting(b, s).slid_spring;
   } while (acting(b, s).overlap > 0);
@@ -130,8 +131,13 @@ TEST(PairOfGrains, MomentumAndAngularMomentumAreKept) {
 TEST(PairOfGrains, RigidRotationHasNoSlip) {
   const Vec3 spin{0.7, -1.1, 2.3}, x1{0.31, 0.2, 0.11}, x2{-0.2, 0.05, -0.3};
   const double r1 = 0.4, r2 = 0.36;
-  const laws::PairMotion<double> motion
-      {numbers(x1 - x2), numbers(cross(spin, x1) - cross(spin, x2)), numbers(2 * spin), {0, 0, 0}, r1 + r2, r1 - r2, 1.0};
+  const laws::PairMotion<double> motion{numbers(x1 - x2),
+                                        numbers(cross(spin, x1) - cross(spin, x2)),
+                                        numbers(2 * spin),
+                                        {0, 0, 0},
+                                        r1 + r2,
+                                        r1 - r2,
+                                        1.0};
   const laws::PairGeometry<double> g = laws::pair_geometry(motion);
   EXPECT_GT(g.overlap, 0);
   EXPECT_LT(norm(vec3(g.slip)), 1e-15);

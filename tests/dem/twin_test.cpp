@@ -5,8 +5,8 @@
 #include <map>
 
 #include "core/parallel.hpp"
-#include "dem/contacts.hpp"
 #include "dem/contact_laws.hpp"
+#include "dem/contacts.hpp"
 #include "helpers.hpp"
 
 namespace bagnold::dem {
@@ -64,7 +64,9 @@ TwinNormal twin_normal(const TwinLaws& t, double delta, double m, double R) {
   return {K * std::pow(delta, 1.5), alpha * std::sqrt(m * K) * std::pow(delta, 0.25), 1.5 * K * std::sqrt(delta)};
 }
 
-Vec3 twin_kept(const Vec3& spring, double earlier, double now) { return earlier < now ? earlier / now * spring : spring; }
+Vec3 twin_kept(const Vec3& spring, double earlier, double now) {
+  return earlier < now ? earlier / now * spring : spring;
+}
 
 // What a pair of grains and a grain at a wall have in common. A wall is a still body of infinite size and mass.
 struct TwinContact {
@@ -113,7 +115,8 @@ void twin_contact(const TwinLaws& t, const DemState& s, TwinState& a, std::size_
   a.q[at(j)] += cross(bj, -f) - M;
 }
 
-void twin_pair(const TwinLaws& t, const DemState& s, TwinState& a, std::size_t i, std::size_t j, double dt, Springs& next) {
+void twin_pair(const TwinLaws& t, const DemState& s, TwinState& a, std::size_t i, std::size_t j, double dt,
+               Springs& next) {
   const Grains& g = s.grains;
   const Vec3 r = minimum_image(s.box, a.x[i] - a.x[j]);
   const double ri = g.diameter[i] / 2, rj = g.diameter[j] / 2;
@@ -122,16 +125,20 @@ void twin_pair(const TwinLaws& t, const DemState& s, TwinState& a, std::size_t i
   const double Ii = 1.4 * g.mass[i] * ri * ri, Ij = 1.4 * g.mass[j] * rj * rj;
   const double m = flows ? g.mass[i] * g.mass[j] / (g.mass[i] + g.mass[j]) : g.mass[i];
   twin_contact(t, s, a, i,
-               {static_cast<std::int64_t>(j), r / norm(r), a.v[j], a.w[j], ri + rj - norm(r), norm(r), m, ri * rj / (ri + rj),
-                flows ? Ii * Ij / (Ii + Ij) : Ii}, dt, next);
+               {static_cast<std::int64_t>(j), r / norm(r), a.v[j], a.w[j], ri + rj - norm(r), norm(r), m,
+                ri * rj / (ri + rj), flows ? Ii * Ij / (Ii + Ij) : Ii},
+               dt, next);
 }
 
-void twin_wall(const TwinLaws& t, const DemState& s, TwinState& a, std::size_t i, std::size_t w, double dt, Springs& next) {
+void twin_wall(const TwinLaws& t, const DemState& s, TwinState& a, std::size_t i, std::size_t w, double dt,
+               Springs& next) {
   const double ri = s.grains.diameter[i] / 2, height = dot(a.x[i] - s.walls[w].point, s.walls[w].normal);
   if (height >= ri) return;
   const double m = s.grains.mass[i];
-  twin_contact(t, s, a, i, {-1 - static_cast<std::int64_t>(w), s.walls[w].normal, {}, {}, ri - height, INFINITY, m, ri, 1.4 * m * ri * ri},
-               dt, next);
+  twin_contact(
+      t, s, a, i,
+      {-1 - static_cast<std::int64_t>(w), s.walls[w].normal, {}, {}, ri - height, INFINITY, m, ri, 1.4 * m * ri * ri},
+      dt, next);
 }
 
 void twin_forces(const TwinLaws& t, const DemState& s, TwinState& a, double dt) {

@@ -11,7 +11,8 @@ namespace bagnold::io {
 namespace {
 
 constexpr const char* atoms =
-    "ITEM: UNITS\nlj\nITEM: TIME\n0.5\nITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff fs\n-1 1\n0 2.5\n0 1e1\n"
+    "ITEM: UNITS\nlj\nITEM: TIME\n0.5\nITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff fs\n-1 "
+    "1\n0 2.5\n0 1e1\n"
     "ITEM: ATOMS id x\n7 0.25\n3 -1e-3\n";
 
 TEST(Lammps, ReadsInstantsColumnsAndBounds) {
@@ -39,7 +40,8 @@ TEST(Lammps, NamesFileAndLineOfWhatIsWrong) {
   };
   const std::string good = atoms;
   EXPECT_TRUE(contains(text_of(good.substr(0, good.rfind("3 -1e-3"))), "after 1 of 2 rows"));
-  EXPECT_TRUE(contains(text_of(good.substr(0, good.rfind("3 -1e-3")) + "3 abc\n"), "a.dump:15:1: error: 'abc' in column x"));
+  EXPECT_TRUE(
+      contains(text_of(good.substr(0, good.rfind("3 -1e-3")) + "3 abc\n"), "a.dump:15:1: error: 'abc' in column x"));
   EXPECT_TRUE(contains(text_of(good.substr(0, good.rfind("3 -1e-3")) + "3\n"), "1 values, expected 2"));
   EXPECT_TRUE(contains(text_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n"), "not orthogonal"));
   EXPECT_TRUE(contains(text_of("hello\n"), "ITEM:"));
@@ -69,7 +71,7 @@ TEST(Mercury, ReadsParticlesAndContacts) {
   ASSERT_EQ(c->contacts.size(), 2u);
   EXPECT_EQ(c->contacts[0].force, (Vec3{3, 4, 0}));
   EXPECT_EQ(c->contacts[1].j, -2);
-  EXPECT_EQ(c->contacts[1].normal, (Vec3{0, 0, 1}));    // from the wall to the particle, unlike in the file
+  EXPECT_EQ(c->contacts[1].normal, (Vec3{0, 0, 1}));  // from the wall to the particle, unlike in the file
   EXPECT_EQ(c->contacts[1].force, (Vec3{-4, 0, 3}));
   const auto none = fstat.next();
   ASSERT_TRUE(none);
@@ -84,11 +86,12 @@ TEST(Mercury, NamesFileAndLineOfWhatIsWrong) {
     write_file(scratch / "a.data", content);
     return error_of<InputError>([&] { MercuryData(scratch / "a.data").next(); });
   };
-  EXPECT_TRUE(contains(data("1 0.5 0 0 1 1\n"), "a.data:1:1: error: 6 numbers"));   // two dimensions
+  EXPECT_TRUE(contains(data("1 0.5 0 0 1 1\n"), "a.data:1:1: error: 6 numbers"));  // two dimensions
   EXPECT_TRUE(contains(data("2 0.5 0 0 0 1 2 3\n0 0 0 0 0 0 1 0 0 0 0 0 0 0\n"), "after 1 of 2"));
   EXPECT_TRUE(contains(data("1 0.5 0 0 0 1 2 3\n0 0 0\n"), "a.data:2:1: error: 3 numbers, expected 14"));
   write_file(scratch / "a.fstat", "0.5 0 1\n");
-  EXPECT_TRUE(contains(error_of<InputError>([&] { MercuryFstat(scratch / "a.fstat").next(); }), "header of an instant"));
+  EXPECT_TRUE(
+      contains(error_of<InputError>([&] { MercuryFstat(scratch / "a.fstat").next(); }), "header of an instant"));
 }
 
 }  // namespace

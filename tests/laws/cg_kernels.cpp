@@ -11,7 +11,7 @@ using namespace bagnold;
 namespace {
 
 template <class F>
-double integrate(F f, double a, double b, int panels = 2000) {   // composite four-point Gauss rule
+double integrate(F f, double a, double b, int panels = 2000) {  // composite four-point Gauss rule
   const double x[2] = {0.3399810435848563, 0.8611363115940526}, w[2] = {0.6521451548625461, 0.3478548451374538};
   double sum = 0;
   const double h = (b - a) / panels;
@@ -30,7 +30,9 @@ void for_each_kernel(F f) {
   });
 }
 
-double sphere(int dimension) { return dimension == 1 ? 2 : dimension == 2 ? 2 * std::numbers::pi : 4 * std::numbers::pi; }
+double sphere(int dimension) {
+  return dimension == 1 ? 2 : dimension == 2 ? 2 * std::numbers::pi : 4 * std::numbers::pi;
+}
 
 }  // namespace
 
@@ -38,7 +40,8 @@ TEST(CgKernels, IntegrateToOneWithTheirWidthAsStandardDeviation) {
   for_each_kernel([](const auto& k) {
     for (int D = 1; D <= 3; ++D) {
       const double c = k.support(D);
-      const double mass = sphere(D) * integrate([&](double r) { return std::pow(r, D - 1) * k.density(r * r, D); }, 0, c);
+      const double mass =
+          sphere(D) * integrate([&](double r) { return std::pow(r, D - 1) * k.density(r * r, D); }, 0, c);
       const double r2 = sphere(D) * integrate([&](double r) { return std::pow(r, D + 1) * k.density(r * r, D); }, 0, c);
       EXPECT_NEAR(mass, 1, 1e-12) << D;
       EXPECT_NEAR(r2 / D, 0.37 * 0.37, 1e-12) << D;
@@ -66,8 +69,11 @@ TEST(CgKernels, DerivativesAreDerivatives) {
     const double h = 1e-4 * k.width;
     for (int n = -2; n < smooth; ++n)
       for (double z : {-0.83, -0.31, -0.11, 0.2, 0.47, 0.9}) {
-        const double numeric = (8 * (k.derivative(n, z + h) - k.derivative(n, z - h)) - k.derivative(n, z + 2 * h) + k.derivative(n, z - 2 * h)) / (12 * h);
-        EXPECT_NEAR(k.derivative(n + 1, z), numeric, 1e-8 * std::pow(k.width, -n - 2) * std::tgamma(n + 4)) << n << " at " << z;
+        const double numeric = (8 * (k.derivative(n, z + h) - k.derivative(n, z - h)) - k.derivative(n, z + 2 * h) +
+                                k.derivative(n, z - 2 * h)) /
+                               (12 * h);
+        EXPECT_NEAR(k.derivative(n + 1, z), numeric, 1e-8 * std::pow(k.width, -n - 2) * std::tgamma(n + 4))
+            << n << " at " << z;
       }
     for (double z : {-0.5, 0.0, 0.3}) EXPECT_NEAR(k.derivative(0, z), k.density(z * z, 1), 1e-14);
     const double far = 20 * k.width;

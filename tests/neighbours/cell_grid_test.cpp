@@ -19,7 +19,8 @@ std::vector<Vec3> points(const Box& box, int n, std::uint64_t seed) {
   std::vector<Vec3> x(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < x.size(); ++i)
     for (int k = 0; k < 3; ++k)
-      x[i][k] = box.origin[k] + box.length[k] * random::uniform(seed, random::Stream::test, i, static_cast<std::uint32_t>(k));
+      x[i][k] =
+          box.origin[k] + box.length[k] * random::uniform(seed, random::Stream::test, i, static_cast<std::uint32_t>(k));
   return x;
 }
 
@@ -50,14 +51,15 @@ void expect_all_pairs(const Box& box, const std::vector<Vec3>& x, double cutoff)
         const auto steps = image_steps(static_cast<Image>(code));
         bool exists = true;
         for (std::size_t k = 0; k < 3; ++k) exists = exists && (steps[k] == 0 || box.periodic[k]);
-        if (exists && norm(x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)] - shift[static_cast<std::size_t>(code)]) < cutoff)
+        if (exists && norm(x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)] -
+                           shift[static_cast<std::size_t>(code)]) < cutoff)
           expected.insert({i, j, code});
       }
   EXPECT_EQ(found, expected);
 }
 
 TEST(CellGrid, FindsEveryPairOnceInBoxesOfAnyShape) {
-  const std::array<Vec3, 6> lengths{Vec3{1, 1, 1},     {1.05, 2.2, 3.3}, {9, 1, 2},
+  const std::array<Vec3, 6> lengths{Vec3{1, 1, 1},    {1.05, 2.2, 3.3}, {9, 1, 2},
                                     {2.0, 2.0, 11.0}, {3.01, 5, 7.7},   {12.3, 4.4, 1.7}};
   std::uint64_t seed = 0;
   for (const Vec3& length : lengths)

@@ -37,12 +37,13 @@ class Report : public testing::Test {
                                                                               {"theta_deg", 24.0},
                                                                               {"gravity_normal", 0.9},
                                                                               {"alpha", nullptr}}}});
-    const std::vector<io::Column> profile{
-        {"z", "d", ""}, {"u_x", "", ""}, {"rho", "", ""}, {"sigma_zz", "", ""}, {"mu", "", ""}, {"grad_u_xz", "", ""}};
+    const std::vector<io::Column> profile{{"z", "d", ""},       {"u_x", "", ""}, {"rho", "", ""},
+                                          {"sigma_zz", "", ""}, {"mu", "", ""},  {"grad_u_xz", "", ""}};
     std::vector<std::vector<double>> cells(6);
     for (int k = 0; k <= 20; ++k) {
       const double z = h * k / 20;
-      const std::vector<double> row{z, 5.0 / 3 * mean * (1 - std::pow(1 - z / h, 1.5)), 1.1, 1.1 * 0.9 * (h - z),
+      const std::vector<double> row{z,     5.0 / 3 * mean * (1 - std::pow(1 - z / h, 1.5)),
+                                    1.1,   1.1 * 0.9 * (h - z),
                                     0.445, 2.5 * mean / h * std::sqrt(1 - z / h)};
       for (std::size_t c = 0; c < 6; ++c) cells[c].push_back(row[c]);
     }

@@ -8,12 +8,14 @@
 namespace bagnold::scenario {
 namespace {
 
-double smallest_gap(const Box& box, const std::vector<Vec3>& x, const std::vector<double>& d, const std::vector<Sphere>& others) {
+double smallest_gap(const Box& box, const std::vector<Vec3>& x, const std::vector<double>& d,
+                    const std::vector<Sphere>& others) {
   double gap = 1e300;
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
       gap = std::min(gap, norm(minimum_image(box, x[i] - x[j])) - 0.5 * (d[i] + d[j]));
-    for (const Sphere& s : others) gap = std::min(gap, norm(minimum_image(box, x[i] - s.x)) - 0.5 * (d[i] + s.diameter));
+    for (const Sphere& s : others)
+      gap = std::min(gap, norm(minimum_image(box, x[i] - s.x)) - 0.5 * (d[i] + s.diameter));
   }
   return gap;
 }
@@ -40,8 +42,10 @@ TEST(Fill, ChuteFillingIsLooseAndFree) {
 TEST(Fill, SizesAndCylinderAndFloorAreRespected) {
   const Box box{{-3, -3, 0}, {6, 6, 1}, {false, false, false}};
   std::vector<double> diameters;
-  for (int i = 0; i < 200; ++i) diameters.push_back(0.3 + 0.3 * random::uniform(3, random::Stream::sizes, static_cast<std::uint64_t>(i)));
-  const auto x = fill({.box = box, .solid_floor = true, .height = 2, .cylinder_radius = 2}, diameters, {}, 7, random::Stream::fill);
+  for (int i = 0; i < 200; ++i)
+    diameters.push_back(0.3 + 0.3 * random::uniform(3, random::Stream::sizes, static_cast<std::uint64_t>(i)));
+  const auto x = fill({.box = box, .solid_floor = true, .height = 2, .cylinder_radius = 2}, diameters, {}, 7,
+                      random::Stream::fill);
   EXPECT_GE(smallest_gap(box, x, diameters, {}), 0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     EXPECT_LE(std::hypot(x[i].x, x[i].y), 2 - 0.5 * diameters[i] + 1e-12);
@@ -52,7 +56,8 @@ TEST(Fill, SizesAndCylinderAndFloorAreRespected) {
 TEST(Fill, ScalesBitwiseWithTheUnitOfLength) {
   const auto scaled = [](double unit) {
     const Box box{{0, 0, 0}, {8 * unit, 4 * unit, unit}, {true, true, false}};
-    return fill({.box = box, .height = 3 * unit, .growth = 1e-4 * unit}, std::vector<double>(60, unit), {}, 5, random::Stream::fill);
+    return fill({.box = box, .height = 3 * unit, .growth = 1e-4 * unit}, std::vector<double>(60, unit), {}, 5,
+                random::Stream::fill);
   };
   const auto a = scaled(1), b = scaled(16);
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(16.0 * a[i], b[i]);

@@ -32,7 +32,8 @@ TEST(Invariance, MirrorAndQuarterTurnsBitForBit) {
       s.gravity.slope_y = cy * tan_d(26);
       return s;
     };
-    Flow plain(exact_direction(release(n, 0, measured), 0.8, 0.6)), mirrored(exact_direction(release(n, 0, measured), 0.8, -0.6)),
+    Flow plain(exact_direction(release(n, 0, measured), 0.8, 0.6)),
+        mirrored(exact_direction(release(n, 0, measured), 0.8, -0.6)),
         turned(exact_direction(release(n, 0, measured), -0.6, 0.8));
     plain.fill(lump);
     const Grid& g = plain.solver.setup.grid;
@@ -73,7 +74,8 @@ TEST(Invariance, ThreadsAndTilesDoNotShow) {
     std::vector<double> inside;  // ghosts of sleeping tiles are not kept up to date
     for (int j = 0; j < g.ny; ++j)
       for (int i = 0; i < g.nx; ++i)
-        for (const auto* f : {&run.state.now.D, &run.state.now.Mx, &run.state.now.My}) inside.push_back((*f)[g.at(i, j)]);
+        for (const auto* f : {&run.state.now.D, &run.state.now.Mx, &run.state.now.My})
+          inside.push_back((*f)[g.at(i, j)]);
     return inside;
   };
   const auto reference = result(1, 60, 64);
@@ -108,8 +110,10 @@ TEST(Conservation, MassToRoundOffThroughWallsAndOutflow) {
     run.to(25);
     const double balance = total_mass(run.solver, run.state) + mass_crossed(run.solver, run.state);
     EXPECT_NEAR(balance / start, 1, 1e-13);
-    if (kind == BoundaryKind::outflow) EXPECT_GT(mass_crossed(run.solver, run.state) / start, 0.05);
-    else if (kind == BoundaryKind::wall) EXPECT_EQ(mass_crossed(run.solver, run.state), 0);
+    if (kind == BoundaryKind::outflow)
+      EXPECT_GT(mass_crossed(run.solver, run.state) / start, 0.05);
+    else if (kind == BoundaryKind::wall)
+      EXPECT_EQ(mass_crossed(run.solver, run.state), 0);
     for (double D : run.state.now.D) ASSERT_GE(D, 0);
   }
 }

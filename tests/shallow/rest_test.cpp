@@ -28,7 +28,8 @@ void expect_frozen(Flow& run, double t) {
 TEST(Problem06, LakeAtRestWithDryIslands) {
   for (double K : {1.0, 0.95}) {
     Definition s = line(200, 0, 10, 0, coulomb(0, 1, K));
-    s.bed = padded_bed(s.grid, [](double x, double) { return 0.8 * std::exp(-4 * (x - 3) * (x - 3)) + 0.3 * std::sin(2 * x); });
+    s.bed = padded_bed(s.grid,
+                       [](double x, double) { return 0.8 * std::exp(-4 * (x - 3) * (x - 3)) + 0.3 * std::sin(2 * x); });
     s.boundary[0].kind = s.boundary[1].kind = BoundaryKind::wall;
     Flow run(s);
     const Grid& g = run.solver.setup.grid;

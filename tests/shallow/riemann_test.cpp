@@ -50,7 +50,8 @@ double stoker_error(int n) {
 
 TEST(Problem01, CoulombDamBreakOnAnIncline) {
   double front1 = 0, front2 = 0;
-  const double e1 = dam_break_error(300, &front1), e2 = dam_break_error(600, &front2), e4 = dam_break_error(1200, &front2);
+  const double e1 = dam_break_error(300, &front1), e2 = dam_break_error(600, &front2),
+               e4 = dam_break_error(1200, &front2);
   tabulate("1 dam break", "L1(h) at 1200 cells", e4, "< 2e-3");
   tabulate("1 dam break", "order", order(e2, e4), ">= 0.9");
   EXPECT_LT(e4, 2e-3);
@@ -78,7 +79,8 @@ TEST(Problem09, StationaryJumpWithShapeFactorAndStressRatio) {
   s.boundary[0] = {BoundaryKind::inflow, {{0}, {1}, {F1}}};
   s.boundary[1] = {BoundaryKind::inflow, {{0}, {ratio}, {-F1 / ratio}}};
   Flow run(s);
-  run.fill([&](double x, double) { return x < 0 ? 1 : ratio; }, [&](double x, double) { return x < 0 ? F1 : F1 / ratio; });
+  run.fill([&](double x, double) { return x < 0 ? 1 : ratio; },
+           [&](double x, double) { return x < 0 ? F1 : F1 / ratio; });
   run.exactly(20);
   const Profile p = run.profile();
   EXPECT_NEAR(p.h[100], 1, 1e-10);

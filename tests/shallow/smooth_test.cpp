@@ -13,7 +13,8 @@ struct Cap {
   double g_of(double t) const {
     double lo = 1, hi = 1e4;
     for (int k = 0; k < 200; ++k) {
-      const double g = 0.5 * (lo + hi), at = L / (2 * std::sqrt(G * H)) * (std::sqrt(g * (g - 1)) + std::log(std::sqrt(g) + std::sqrt(g - 1)));
+      const double g = 0.5 * (lo + hi), at = L / (2 * std::sqrt(G * H)) *
+                                             (std::sqrt(g * (g - 1)) + std::log(std::sqrt(g) + std::sqrt(g - 1)));
       (at < t ? lo : hi) = g;
     }
     return 0.5 * (lo + hi);

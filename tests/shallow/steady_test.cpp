@@ -9,7 +9,9 @@ using namespace shallow_test;
 
 // 10. A wall that turns the stream by 15 degrees: here the stream meets the straight bottom wall at that angle.
 TEST(Problem10, ObliqueJump) {
-  struct Case { double alpha, K, beta_deg; };
+  struct Case {
+    double alpha, K, beta_deg;
+  };
   for (const Case& c : {Case{1, 1, 28.59997}, Case{1.2, 1.03, 27.41878}}) {
     const double F1 = 4, turn = rad(15);
     const double sb = std::sin(rad(c.beta_deg)), r = 0.5 * (-1 + std::sqrt(1 + 8 * c.alpha * F1 * F1 * sb * sb / c.K));
@@ -18,7 +20,8 @@ TEST(Problem10, ObliqueJump) {
     s.grid.x0 = s.grid.y0 = 0;
     s.boundary[2].kind = BoundaryKind::wall;
     Flow run(s);
-    run.fill([](double, double) { return 1; }, [&](double, double) { return F1 * std::cos(turn); }, [&](double, double) { return -F1 * std::sin(turn); });
+    run.fill([](double, double) { return 1; }, [&](double, double) { return F1 * std::cos(turn); },
+             [&](double, double) { return -F1 * std::sin(turn); });
     const Solver& solver = run.solver;
     // the undisturbed stream enters on the left and at the top: hold those cells
     for (double t = 0; t < 1.0; t = run.state.time) {
@@ -46,23 +49,28 @@ namespace {
 
 // Growth rate of a small sine of wavenumber k on uniform flow: linear theory of eq. 34 with constant alpha, K.
 double theory(const laws::PouliquenForterre& law, double theta, double h, double alpha, double k) {
-  const double gc = std::cos(rad(theta)), F = law.beta * h / laws::stopping_height(law, theta) - law.gamma, u = F * std::sqrt(gc * h);
+  const double gc = std::cos(rad(theta)), F = law.beta * h / laws::stopping_height(law, theta) - law.gamma,
+               u = F * std::sqrt(gc * h);
   const auto p = law.prepared(1);
   const auto force = [&](double hh, double m) {  // h gc (T - mu) as a function of h and m = h u
     return hh * gc * (tan_d(theta) - p.mu(hh, m / hh / std::sqrt(gc * hh)));
   };
-  const double e = 1e-6, m = h * u, Sh = (force(h + e, m) - force(h - e, m)) / (2 * e), Sm = (force(h, m + e) - force(h, m - e)) / (2 * e);
+  const double e = 1e-6, m = h * u, Sh = (force(h + e, m) - force(h - e, m)) / (2 * e),
+               Sm = (force(h, m + e) - force(h, m - e)) / (2 * e);
   using C = std::complex<double>;
   const C ik(0, k);
   // s h' = -ik m', s m' = -ik (A h' + B m') + Sh h' + Sm m'
   const double A = -alpha * u * u + gc * h, B = 2 * alpha * u;
   const C b = ik * B - Sm;
-  const C s1 = 0.5 * (-b + std::sqrt(b * b + 4.0 * (-ik) * (-(ik * A) + Sh))), s2 = 0.5 * (-b - std::sqrt(b * b + 4.0 * (-ik) * (-(ik * A) + Sh)));
+  const C s1 = 0.5 * (-b + std::sqrt(b * b + 4.0 * (-ik) * (-(ik * A) + Sh))),
+          s2 = 0.5 * (-b - std::sqrt(b * b + 4.0 * (-ik) * (-(ik * A) + Sh)));
   return std::max(s1.real(), s2.real());
 }
 
-double measured(const laws::PouliquenForterre& law, double theta, double h, double alpha, double wavelength, double time) {
-  const double gc = std::cos(rad(theta)), F = law.beta * h / laws::stopping_height(law, theta) - law.gamma, u = F * std::sqrt(gc * h);
+double measured(const laws::PouliquenForterre& law, double theta, double h, double alpha, double wavelength,
+                double time) {
+  const double gc = std::cos(rad(theta)), F = law.beta * h / laws::stopping_height(law, theta) - law.gamma,
+               u = F * std::sqrt(gc * h);
   closure::ClosureSet set = coulomb(0, alpha);
   set.friction = law;
   Definition s = line(200, 0, wavelength, theta, set);
@@ -90,7 +98,8 @@ TEST(Problem12, RollWavesGrowAndDecayAsTheyShould) {
   for (double alpha : {1.0, 1.25})
     for (double theta : {24.0, 28.0}) {
       const double h = 12, F = law.beta * h / laws::stopping_height(law, theta) - law.gamma;
-      const double threshold = (25.0 / 4 - 4 * alpha) * F * F + (5 - 2 * alpha) * law.gamma * F + law.gamma * law.gamma - 1;
+      const double threshold =
+          (25.0 / 4 - 4 * alpha) * F * F + (5 - 2 * alpha) * law.gamma * F + law.gamma * law.gamma - 1;
       const double wavelength = 300, expected = theory(law, theta, h, alpha, 2 * std::numbers::pi / wavelength);
       EXPECT_EQ(expected > 0, threshold > 0) << alpha << ' ' << theta;
       const double rate = measured(law, theta, h, alpha, wavelength, 400);
@@ -114,8 +123,10 @@ TEST(Problem13, ContractionChokes) {
     run.to(60);
     const Profile p = run.profile();
     const double upstream = p.h[195];  // just before the contraction
-    if (ratio > critical) EXPECT_NEAR(upstream, 1, 1e-6);
-    else EXPECT_GT(upstream, 1.5);
+    if (ratio > critical)
+      EXPECT_NEAR(upstream, 1, 1e-6);
+    else
+      EXPECT_GT(upstream, 1.5);
     if (ratio > critical) {  // energy and mass give the thickness in the throat
       double lo = 1, hi = std::pow(F0, 2.0 / 3) / std::pow(ratio, 2.0 / 3);
       const double E = 0.5 * F0 * F0 + 1;
@@ -161,12 +172,15 @@ double inverse_error(int n, double theta, double h0, double flux_factor) {
   };
   const int fine = 40 * n;  // Simpson-like midpoint sums of b_x
   std::vector<double> b(static_cast<std::size_t>(fine) + 1, 0.0);
-  for (int k = 0; k < fine; ++k) b[static_cast<std::size_t>(k) + 1] = b[static_cast<std::size_t>(k)] + slope((k + 0.5) * length / fine) * length / fine;
+  for (int k = 0; k < fine; ++k)
+    b[static_cast<std::size_t>(k) + 1] =
+        b[static_cast<std::size_t>(k)] + slope((k + 0.5) * length / fine) * length / fine;
   const double drop = b.back();
   s.bed = padded_bed(s.grid, [&](double x, double) {
     const double turns = std::floor(x / length), at = (x / length - turns) * fine;
     const auto k = static_cast<std::size_t>(at);
-    return b[k] + (at - static_cast<double>(k)) * (b[std::min(k + 1, static_cast<std::size_t>(fine))] - b[k]) + turns * drop;
+    return b[k] + (at - static_cast<double>(k)) * (b[std::min(k + 1, static_cast<std::size_t>(fine))] - b[k]) +
+           turns * drop;
   });
   // periodic: the mean bed slope is given to the plane instead
   for (int i = -halo; i < n + halo; ++i)
@@ -185,7 +199,10 @@ double inverse_error(int n, double theta, double h0, double flux_factor) {
 }  // namespace
 
 TEST(Problem14, InverseSteadyStateWithEveryClosure) {
-  struct Case { const char* name; double theta, h, u; };
+  struct Case {
+    const char* name;
+    double theta, h, u;
+  };
   for (const Case& c : {Case{"subcritical", 24, 10, 1.0}, Case{"supercritical", 28, 8, 4.0}}) {
     const double e1 = inverse_error(50, c.theta, c.h, c.u), e2 = inverse_error(100, c.theta, c.h, c.u);
     tabulate(std::string("14 inverse ") + c.name, "L1(h) at 100 cells", e2, "< 2e-3");

@@ -102,7 +102,8 @@ inline double relative_l1(const std::vector<double>& a, const std::vector<double
 inline double order(double coarse, double fine, double ratio = 2) { return std::log(coarse / fine) / std::log(ratio); }
 
 // One line of the verification table (validation/shallow/): printed when BAGNOLD_TABLE names a file.
-inline void tabulate(const std::string& problem, const std::string& quantity, double value, const std::string& criterion) {
+inline void tabulate(const std::string& problem, const std::string& quantity, double value,
+                     const std::string& criterion) {
   if (const char* name = std::getenv("BAGNOLD_TABLE"))
     if (std::FILE* f = std::fopen(name, "a")) {
       std::fprintf(f, "%s,%s,%.4g,%s\n", problem.c_str(), quantity.c_str(), value, criterion.c_str());

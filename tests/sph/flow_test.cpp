@@ -42,8 +42,10 @@ std::vector<double> all_numbers(State& s) {
     std::visit(
         [&](auto* array) {
           using T = std::remove_pointer_t<decltype(array)>;
-          if constexpr (std::is_same_v<T, double>) numbers.push_back(*array);
-          else if constexpr (std::is_same_v<T, std::vector<double>>) numbers.insert(numbers.end(), array->begin(), array->end());
+          if constexpr (std::is_same_v<T, double>)
+            numbers.push_back(*array);
+          else if constexpr (std::is_same_v<T, std::vector<double>>)
+            numbers.insert(numbers.end(), array->begin(), array->end());
         },
         a.array);
   return numbers;
@@ -63,7 +65,7 @@ const scenario::ContinuumColumn small_column{.radius = 0.03, .height = 0.03, .sp
 TEST(Rest, TankBelowTheFrictionAngleHoldsHydrostaticPressure) {
   for (const bool better : {false, true}) {
     Simulation r = start(scenario::InclinedPlane{.angle_deg = 0, .height = 0.05, .length = 0.05, .spacing = 5e-3},
-                  better ? improved(incline_model()) : incline_model());
+                         better ? improved(incline_model()) : incline_model());
     advance(r, 0.2);
     refresh(r.state, r.work, r.model);
     const Particles& p = r.state.particles;
@@ -111,7 +113,8 @@ TEST(Exactness, SameBitsWhateverTheThreadsAndAfterRestart) {
       if (which == 0) return start(small_plane, incline_model());
       if (which == 1) return start(small_plane, improved(incline_model()));
       if (which == 2) return start(small_column, scenario::ColumnGeometry::axisymmetric, improved(Model{}));
-      return start(scenario::ContinuumColumn{.radius = 0.012, .height = 0.012, .spacing = 3e-3}, scenario::ColumnGeometry::cylinder, improved(Model{}));
+      return start(scenario::ContinuumColumn{.radius = 0.012, .height = 0.012, .spacing = 3e-3},
+                   scenario::ColumnGeometry::cylinder, improved(Model{}));
     };
     set_threads(1);
     Simulation one = fresh();
@@ -187,7 +190,8 @@ TEST(Implicit, AgreesWithExplicitOnACollapse) {
   Model implicit = improved(Model{}), explicit_euler = implicit;
   explicit_euler.stepping = Stepping::explicit_euler;
   explicit_euler.numerics.cfl = 0.4;
-  Simulation a = start(small_column, scenario::ColumnGeometry::planar, implicit), b = start(small_column, scenario::ColumnGeometry::planar, explicit_euler);
+  Simulation a = start(small_column, scenario::ColumnGeometry::planar, implicit),
+             b = start(small_column, scenario::ColumnGeometry::planar, explicit_euler);
   advance(a, 0.06);
   advance(b, 0.06);
   const Front fa = find_front(a.state, a.work, a.model), fb = find_front(b.state, b.work, b.model);

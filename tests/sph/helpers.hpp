@@ -11,7 +11,9 @@
 
 namespace bagnold::sph::test {
 
-inline double random_unit(std::uint64_t item, std::uint32_t draw) { return random::uniform(1, random::Stream::test, item, draw); }
+inline double random_unit(std::uint64_t item, std::uint32_t draw) {
+  return random::uniform(1, random::Stream::test, item, draw);
+}
 
 // The sand of table 3, row 3, without gravity or floor.
 inline Model free_model(int dim, bool corrected) {
@@ -47,7 +49,8 @@ inline State block(const Model& model, int count, double angle, double disorder,
     std::array<double, 3> x{};
     int rest = i;
     for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d, rest /= count)
-      x[d] = rest % count - 0.5 * (count - 1) + disorder * (2 * random_unit(static_cast<std::uint64_t>(i), static_cast<std::uint32_t>(d)) - 1);
+      x[d] = rest % count - 0.5 * (count - 1) +
+             disorder * (2 * random_unit(static_cast<std::uint64_t>(i), static_cast<std::uint32_t>(d)) - 1);
     const auto k = static_cast<std::size_t>(i);
     s.particles.x[0][k] = std::cos(angle) * x[0] - std::sin(angle) * x[1];
     s.particles.x[1][k] = std::sin(angle) * x[0] + std::cos(angle) * x[1];

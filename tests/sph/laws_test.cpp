@@ -21,7 +21,8 @@ TEST(Kernel, IntegratesToOneAndSlopeIsItsDerivative) {
     for (const int dim : {2, 3}) {
       double integral = 0;
       const double dR = 1e-4;
-      for (double R = 0.5 * dR; R < 2; R += dR) integral += K::norm(dim) * K::value(R) * (dim == 2 ? 2 * M_PI * R : 4 * M_PI * R * R) * dR;
+      for (double R = 0.5 * dR; R < 2; R += dR)
+        integral += K::norm(dim) * K::value(R) * (dim == 2 ? 2 * M_PI * R : 4 * M_PI * R * R) * dR;
       EXPECT_NEAR(integral, 1, 1e-6) << K::name;
     }
     for (double R = 0.05; R < 2.2; R += 0.1)
@@ -74,7 +75,8 @@ TEST(Cubic, IsTheLargestRootOfEquation44) {
 TEST(Cubic, AtRestIsElasticOrUnloaded) {
   const dilatancy::Linear phi;
   for (const double r : {0.2, 0.9, 0.999999}) EXPECT_LT(eos::largest_root(phi.cubic(r, 0.0), 0.3), 1e-7);
-  for (const double r : {1.000001, 1.01, 1.5}) EXPECT_NEAR(eos::largest_root(phi.cubic(r, 0.0), 0.3), std::sqrt(r - 1), 1e-9);
+  for (const double r : {1.000001, 1.01, 1.5})
+    EXPECT_NEAR(eos::largest_root(phi.cubic(r, 0.0), 0.3), std::sqrt(r - 1), 1e-9);
 }
 
 TEST(Regularisation, ViscosityIsFinitePositiveFallsWithShearAndTendsToTheLaw) {

@@ -29,8 +29,10 @@ Case prepare(Model model, int count, double angle, double disorder) {
     c.work.pressure[i] = 1000 * random_unit(id, 20);
     c.work.viscosity[i] = 1 + 100 * std::pow(random_unit(id, 21), 4);
   }
-  if (model.corrected()) corrected_pressure_and_coefficients(c.work, p, model);
-  else pair_momentum_rate(c.work, p, model, false), pair_coefficients(c.work, p, model);
+  if (model.corrected())
+    corrected_pressure_and_coefficients(c.work, p, model);
+  else
+    pair_momentum_rate(c.work, p, model, false), pair_coefficients(c.work, p, model);
   return c;
 }
 
@@ -38,7 +40,8 @@ Field velocities(const Case& c, std::uint32_t draw) {
   Field v = c.state.particles.v;
   for (std::size_t d = 0; d < static_cast<std::size_t>(c.model.dim); ++d)
     for (std::size_t i = 0; i < v[d].size(); ++i)
-      v[d][i] = random_unit(static_cast<std::uint64_t>(c.state.particles.id[i]), draw + static_cast<std::uint32_t>(d)) - 0.5;
+      v[d][i] =
+          random_unit(static_cast<std::uint64_t>(c.state.particles.id[i]), draw + static_cast<std::uint32_t>(d)) - 0.5;
   return v;
 }
 
@@ -58,7 +61,8 @@ Balance balance(const Case& c, const Field& force) {
   double total = 0, total_torque = 0, net_torque = 0;
   std::array<double, 3> net{};
   for (std::size_t i = 0; i < p.mass.size(); ++i) {
-    for (std::size_t d = 0; d < static_cast<std::size_t>(c.model.dim); ++d) net[d] += force[d][i], total += std::abs(force[d][i]);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(c.model.dim); ++d)
+      net[d] += force[d][i], total += std::abs(force[d][i]);
     const double torque = p.x[0][i] * force[1][i] - p.x[1][i] * force[0][i];
     net_torque += torque;
     total_torque += std::abs(torque);
@@ -123,8 +127,10 @@ double patch_factor(const Model& base, double angle, double disorder, int count)
   if (model.corrected()) model.viscous = laws::viscous::Variational{};
   Case c = prepare(model, count, angle, disorder);
   std::fill(c.work.viscosity.begin(), c.work.viscosity.end(), 1.0);
-  if (model.corrected()) corrected_pressure_and_coefficients(c.work, c.state.particles, model);
-  else pair_coefficients(c.work, c.state.particles, model);
+  if (model.corrected())
+    corrected_pressure_and_coefficients(c.work, c.state.particles, model);
+  else
+    pair_coefficients(c.work, c.state.particles, model);
   Field v = c.state.particles.v, force = v;
   const Particles& p = c.state.particles;
   for (std::size_t i = 0; i < p.mass.size(); ++i) v[0][i] = p.x[1][i];
@@ -173,7 +179,8 @@ TEST(Kinematics, CorrectedGradientIsExactForLinearFields) {
       ++checked;
       for (std::size_t a = 0; a < static_cast<std::size_t>(dim); ++a)
         for (std::size_t b = 0; b < static_cast<std::size_t>(dim); ++b)
-          ASSERT_NEAR(c.work.gradient[(i * static_cast<std::size_t>(dim) + a) * static_cast<std::size_t>(dim) + b], G[3 * a + b], 1e-12);
+          ASSERT_NEAR(c.work.gradient[(i * static_cast<std::size_t>(dim) + a) * static_cast<std::size_t>(dim) + b],
+                      G[3 * a + b], 1e-12);
     }
     EXPECT_GT(checked, p.size() / 2);
   }
@@ -214,7 +221,8 @@ TEST(Adjoint, AxisymmetricOperatorsAreAdjointAndSymmetric) {
   rebuild(c.work.pairs, p, m);
   p.v = velocities(c, 3);
   kinematics(c.work, p, m, Kinematics::corrected, true);
-  for (std::size_t i = 0; i < p.mass.size(); ++i) c.work.pressure[i] = random_unit(i, 7), c.work.viscosity[i] = random_unit(i, 8);
+  for (std::size_t i = 0; i < p.mass.size(); ++i)
+    c.work.pressure[i] = random_unit(i, 7), c.work.viscosity[i] = random_unit(i, 8);
   corrected_pressure_and_coefficients(c.work, p, m);
   double work_of_force = 0, work_of_pressure = 0;
   for (std::size_t i = 0; i < p.mass.size(); ++i) {
@@ -246,14 +254,16 @@ TEST(Twin, PairSweepsMatchTheEquationsAsPrinted) {
     p.v = velocities(c, 3);
     for (std::size_t i = 0; i < p.mass.size(); ++i) p.rho[i] *= 1 + 0.1 * random_unit(i, 9);
     kinematics(c.work, p, m, Kinematics::pairs);
-    for (std::size_t i = 0; i < p.mass.size(); ++i) c.work.pressure[i] = random_unit(i, 7), c.work.viscosity[i] = 1 + random_unit(i, 8);
+    for (std::size_t i = 0; i < p.mass.size(); ++i)
+      c.work.pressure[i] = random_unit(i, 7), c.work.viscosity[i] = 1 + random_unit(i, 8);
     pair_momentum_rate(c.work, p, m, true);
     const double h = m.h(), a = (dim == 2 ? 7 / (64 * M_PI) : 21 / (256 * M_PI)) / std::pow(h, dim);
     for (std::size_t i = 0; i < p.mass.size(); ++i) {
       double rate = 0;
       std::array<double, 3> acc = m.gravity;
       std::array<std::array<double, 3>, 3> G{};
-      const auto pair = [&](const std::array<double, 3>& r, const std::array<double, 3>& v, double mass, double rho, double pj, double eta) {
+      const auto pair = [&](const std::array<double, 3>& r, const std::array<double, 3>& v, double mass, double rho,
+                            double pj, double eta) {
         double r2 = 0, vr = 0;
         for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += v[d] * r[d];
         const double R = std::sqrt(r2) / h;
@@ -289,7 +299,8 @@ TEST(Twin, PairSweepsMatchTheEquationsAsPrinted) {
         for (std::size_t d = 0; d < D; ++d) e2 += 0.25 * (G[b][d] + G[d][b]) * (G[b][d] + G[d][b]);
       ASSERT_NEAR(c.work.density_rate[i], -(-rate), 1e-9 * 1600);
       ASSERT_NEAR(c.work.shear_rate[i], std::sqrt(2 * e2), 1e-11);
-      for (std::size_t d = 0; d < D; ++d) ASSERT_NEAR(c.work.acceleration[d][i], acc[d], 1e-10 * (1 + std::abs(acc[d])));
+      for (std::size_t d = 0; d < D; ++d)
+        ASSERT_NEAR(c.work.acceleration[d][i], acc[d], 1e-10 * (1 + std::abs(acc[d])));
     }
   }
 }

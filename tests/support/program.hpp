@@ -51,10 +51,12 @@ struct Outcome {
 inline Outcome bagnold(const Scratch& scratch, const std::string& arguments, const std::string& environment = "") {
   // One thread: tiny runs gain nothing from two, and lose much where the machine is shared. A cache of our own:
   // beds are shared between tests, and nothing outside the build decides a result.
-  const std::string command = "cd '" + scratch.path().string() + "' && OMP_NUM_THREADS=1 XDG_CACHE_HOME='" BAGNOLD_TEST_CACHE "' " + environment + " '" BAGNOLD_PROGRAM "' " +
-                              arguments + " >stdout.txt 2>stderr.txt </dev/null";
+  const std::string command = "cd '" + scratch.path().string() +
+                              "' && OMP_NUM_THREADS=1 XDG_CACHE_HOME='" BAGNOLD_TEST_CACHE "' " + environment +
+                              " '" BAGNOLD_PROGRAM "' " + arguments + " >stdout.txt 2>stderr.txt </dev/null";
   const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read_text(scratch / "stdout.txt"), read_text(scratch / "stderr.txt")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read_text(scratch / "stdout.txt"),
+          read_text(scratch / "stderr.txt")};
 }
 
 inline std::string case_file(const std::string& name) { return std::string(BAGNOLD_SOURCE_DIR "/cases/") + name; }

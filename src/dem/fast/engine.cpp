@@ -51,10 +51,12 @@ void carry_history(Engine& engine, Section& section, Scratch& scratch) {
   const std::size_t old_padded = (section.inner.count + batch - 1) / batch * batch;
   const std::size_t new_padded = (next.count + batch - 1) / batch * batch;
   const auto zeros = static_cast<std::uint32_t>(old_padded * numbers);
-  if (scratch.history.size() < (new_padded + 8) * numbers) scratch.history.resize((new_padded + new_padded / 4 + 24) * numbers);
+  if (scratch.history.size() < (new_padded + 8) * numbers)
+    scratch.history.resize((new_padded + new_padded / 4 + 24) * numbers);
   std::fill_n(section.history.begin() + zeros, 8 * numbers, 0.0);
 
-  if (scratch.place.size() < section.outer_count + 1) scratch.place.assign(section.outer_count + section.outer_count / 4 + 16, nowhere);
+  if (scratch.place.size() < section.outer_count + 1)
+    scratch.place.assign(section.outer_count + section.outer_count / 4 + 16, nowhere);
   std::uint32_t* place = scratch.place.data();
   for (std::size_t k = 0; k < section.inner.count; ++k)
     place[section.inner.key[k]] = static_cast<std::uint32_t>((k / 8 * numbers) * 8 + k % 8);
@@ -69,7 +71,8 @@ void carry_history(Engine& engine, Section& section, Scratch& scratch) {
 
 // An economical margin: what `steps` steps of the present accelerations would use up, and a quarter more.
 double margin_for(const Engine& engine, std::size_t a, int steps) {
-  const Slab &left = engine.slabs[a], &right = engine.slabs[static_cast<std::size_t>(engine.ring.wrap(static_cast<int>(a) + 1))];
+  const Slab &left = engine.slabs[a],
+             &right = engine.slabs[static_cast<std::size_t>(engine.ring.wrap(static_cast<int>(a) + 1))];
   const double used = Drift{}.after(steps, engine.dt, left.acceleration + right.acceleration);
   return std::max(1.25 * used, 1e-9 * engine.skin);
 }
@@ -82,7 +85,8 @@ void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
   const Offset pad_i = offset_of(pads), pad_j = offset_of(pads + 1);
   if (!section.mid_valid.holds()) {
     const double margin = margin_for(engine, a, mid_steps);
-    const PairSpan outer{&engine.outer_i[section.outer_begin], &engine.outer_j[section.outer_begin], nullptr, section.outer_count};
+    const PairSpan outer{&engine.outer_i[section.outer_begin], &engine.outer_j[section.outer_begin], nullptr,
+                         section.outer_count};
     select(engine.rows, engine.images, outer, mid_steps * engine.dt, margin, section.mid);
     section.mid.pad(8, pad_i, pad_j, 0);
     section.mid_valid.renew(mid_steps, margin);
@@ -147,14 +151,16 @@ bool holds(const Engine& engine, const Slab& slab) {
 
 double excursion(const Engine& engine, const Slab& slab, double horizon) {
   const Vec3 path = static_cast<double>(engine.step - engine.built_at) * engine.dt * engine.frame;
-  const double moving = largest_excursion(engine.rows, engine.start, slab.begin, slab.moving_end, path, engine.frame, horizon);
+  const double moving =
+      largest_excursion(engine.rows, engine.start, slab.begin, slab.moving_end, path, engine.frame, horizon);
   return slab.moving_end == slab.end ? moving : std::max(moving, norm(path + horizon * engine.frame));  // fixed grains
 }
 
 }  // namespace
 
 bool audit(Engine& engine) {
-  bool all_hold = std::all_of(engine.slabs.begin(), engine.slabs.end(), [&](const Slab& slab) { return holds(engine, slab); });
+  bool all_hold =
+      std::all_of(engine.slabs.begin(), engine.slabs.end(), [&](const Slab& slab) { return holds(engine, slab); });
   if (all_hold) return true;  // the usual case is not worth waking threads
   all_hold = true;
 #pragma omp parallel for schedule(static) reduction(&& : all_hold) if (engine.grain.size() >= 500)
@@ -179,8 +185,10 @@ void check(Engine& engine, DemState& state) {
     if (!(slab.excursion + slab.drift.distance <= 0.5 * engine.skin)) {
       store(engine, state);
       check_motion(state);
-      throw NumericalError(fmt::format("step {} (t = {:g}): a grain was thrown {:g} out of its path within {} steps; the step is too "
-                                       "long for these forces", state.step, state.time(), slab.drift.distance, engine.ring.levels));
+      throw NumericalError(
+          fmt::format("step {} (t = {:g}): a grain was thrown {:g} out of its path within {} steps; the step is too "
+                      "long for these forces",
+                      state.step, state.time(), slab.drift.distance, engine.ring.levels));
     }
   double excess = 0;
   for (const Scratch& scratch : engine.scratch) excess = std::max(excess, scratch.excess);

@@ -51,21 +51,21 @@ struct Engine {
   std::int64_t step = 0;
   bool equal_radii = true, one_kind = true;
   std::size_t history_numbers = 3, constant_numbers = 0;
-  std::vector<double> constants;       // of the laws, by pair of species
+  std::vector<double> constants;  // of the laws, by pair of species
 
   Images images;
   Ring ring;
   Rows rows;
-  std::vector<std::int32_t> grain;     // of each row; -1: none
-  std::vector<std::int32_t> species;   // of each row
-  std::vector<std::size_t> row;        // of each grain
-  std::vector<Vec3> start;             // of each row: where it was when the outer list was made
-  Vec3 frame;                          // velocity relative to which excursions are measured
-  std::int64_t built_at = 0;           // step
+  std::vector<std::int32_t> grain;    // of each row; -1: none
+  std::vector<std::int32_t> species;  // of each row
+  std::vector<std::size_t> row;       // of each grain
+  std::vector<Vec3> start;            // of each row: where it was when the outer list was made
+  Vec3 frame;                         // velocity relative to which excursions are measured
+  std::int64_t built_at = 0;          // step
   std::vector<Slab> slabs;
   std::vector<Section> sections;
   Aligned<Offset> outer_i, outer_j;
-  std::vector<Scratch> scratch;        // by thread
+  std::vector<Scratch> scratch;  // by thread
 };
 
 // Below this the plain engine is as fast.

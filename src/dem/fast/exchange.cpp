@@ -90,7 +90,8 @@ void fill_rows(Engine& engine, const Grains& g) {
   Rows& rows = engine.rows;
   rows.resize(engine.grain.size());
   for (std::size_t k = 0; k < engine.grain.size(); ++k) {
-    double *x = &rows.position[position_doubles * k], *v = &rows.velocity[velocity_doubles * k], *f = &rows.force[force_doubles * k];
+    double *x = &rows.position[position_doubles * k], *v = &rows.velocity[velocity_doubles * k],
+           *f = &rows.force[force_doubles * k];
     if (engine.grain[k] < 0) {  // radius 0, and its companion a little away
       x[0] = engine.grain[k - 1] < 0 ? 0.0 : 0.3 * g.diameter[0];
       continue;
@@ -99,8 +100,10 @@ void fill_rows(Engine& engine, const Grains& g) {
     const bool flows = engine.grain[k] < g.flowing;
     const double radius = 0.5 * g.diameter[i], mass = flows ? 1 / g.mass[i] : 0, inertia = flows ? 1 / g.inertia[i] : 0;
     const std::array<double, 4> position{g.x[i].x, g.x[i].y, g.x[i].z, radius};
-    const std::array<double, 8> velocity{g.v[i].x, g.v[i].y, g.v[i].z, radius, g.omega[i].x, g.omega[i].y, g.omega[i].z, mass};
-    const std::array<double, 8> force{g.force[i].x, g.force[i].y, g.force[i].z, mass, g.torque[i].x, g.torque[i].y, g.torque[i].z, inertia};
+    const std::array<double, 8> velocity{g.v[i].x,     g.v[i].y,     g.v[i].z,     radius,
+                                         g.omega[i].x, g.omega[i].y, g.omega[i].z, mass};
+    const std::array<double, 8> force{g.force[i].x,  g.force[i].y,  g.force[i].z,  mass,
+                                      g.torque[i].x, g.torque[i].y, g.torque[i].z, inertia};
     std::copy(position.begin(), position.end(), x);
     std::copy(velocity.begin(), velocity.end(), v);
     std::copy(force.begin(), force.end(), f);
@@ -199,12 +202,14 @@ bool matches(const Engine& engine, const DemState& state, const ContactLaws& law
       engine.overlap_ratio != state.max_overlap_ratio || engine.row.size() != g.x.size() || state.pairs.origin.empty())
     return false;
   for (int k = 0; k < 3; ++k)
-    if (engine.box.length[k] != state.box.length[k] || engine.box.periodic[at(k)] != state.box.periodic[at(k)]) return false;
+    if (engine.box.length[k] != state.box.length[k] || engine.box.periodic[at(k)] != state.box.periodic[at(k)])
+      return false;
   const bool same_laws = with_laws(laws, [&](const auto& tables) {
     std::vector<double> constants;
     flatten_tables(tables, constants);
     return constants == engine.constants && tables.species == engine.laws.species &&
-           laws.normal.index() == engine.laws.normal.index() && laws.tangential.index() == engine.laws.tangential.index() &&
+           laws.normal.index() == engine.laws.normal.index() &&
+           laws.tangential.index() == engine.laws.tangential.index() &&
            laws.rolling.index() == engine.laws.rolling.index();
   });
   if (!same_laws) return false;
@@ -213,8 +218,8 @@ bool matches(const Engine& engine, const DemState& state, const ContactLaws& law
     const double *x = &engine.rows.position[position_doubles * k], *v = &engine.rows.velocity[velocity_doubles * k];
     const double* f = &engine.rows.force[force_doubles * k];
     const auto same = [](const Vec3& a, const double* b) { return a.x == b[0] && a.y == b[1] && a.z == b[2]; };
-    if (!same(g.x[i], x) || !same(g.v[i], v) || !same(g.omega[i], v + 4) || !same(g.force[i], f) || !same(g.torque[i], f + 4) ||
-        0.5 * g.diameter[i] != x[3] || 1 / g.mass[i] != f[3] || 1 / g.inertia[i] != f[7])
+    if (!same(g.x[i], x) || !same(g.v[i], v) || !same(g.omega[i], v + 4) || !same(g.force[i], f) ||
+        !same(g.torque[i], f + 4) || 0.5 * g.diameter[i] != x[3] || 1 / g.mass[i] != f[3] || 1 / g.inertia[i] != f[7])
       return false;
   }
   return true;
@@ -256,7 +261,8 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
     engine.slabs[s].steps_left = static_cast<std::int64_t>(audited[3]);
   }
   if (state.pairs.origin.empty() && !audit(engine))
-    throw NumericalError(fmt::format("step {} (t = {:g}): grains move too far per step; the step is too long", state.step, state.time()));
+    throw NumericalError(fmt::format("step {} (t = {:g}): grains move too far per step; the step is too long",
+                                     state.step, state.time()));
 }
 
 void store(const Engine& engine, DemState& state) {
@@ -309,7 +315,8 @@ void store(const Engine& engine, DemState& state) {
   pairs.slab_begin = {0, static_cast<std::int64_t>(pairs.i.size())};
   pairs.origin = {static_cast<double>(engine.built_at), engine.frame.x, engine.frame.y, engine.frame.z};
   for (const Slab& slab : engine.slabs)
-    for (const double number : {slab.excursion, slab.drift.speed, slab.drift.distance, static_cast<double>(slab.steps_left)})
+    for (const double number :
+         {slab.excursion, slab.drift.speed, slab.drift.distance, static_cast<double>(slab.steps_left)})
       pairs.origin.push_back(number);
 }
 

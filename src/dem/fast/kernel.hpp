@@ -35,8 +35,8 @@ auto pack_laws(const Tables& tables, Source&& source) {
   const auto normal = pack_law(tables.normal, first, source);
   const auto tangential = pack_law(tables.tangential, first, source);
   const auto rolling = pack_law(tables.rolling, first, source);
-  return laws::PairLaw<std::decay_t<decltype(normal)>, std::decay_t<decltype(tangential)>, std::decay_t<decltype(rolling)>>{
-      normal, tangential, rolling};
+  return laws::PairLaw<std::decay_t<decltype(normal)>, std::decay_t<decltype(tangential)>,
+                       std::decay_t<decltype(rolling)>>{normal, tangential, rolling};
 }
 
 // All constants of every pair of species, one pair after the other; returns how many there are of each.
@@ -124,7 +124,8 @@ struct Kernel {
       double* memory = pairs.history + p * history_numbers;
       const Separation apart = separation(position, i, j);
       const RelativeMotion moving = relative_motion(velocity, i, j);
-      Motion m{fold(input.images, apart.r), moving.v, moving.spin_sum, nothing, apart.reach, moving.size_difference, 1.0};
+      Motion m{fold(input.images, apart.r), moving.v, moving.spin_sum, nothing, apart.reach,
+               moving.size_difference,      1.0};
       Lanes mass_difference = zero;
       if constexpr (!symmetric) {
         const RowDifference d = difference(velocity, i, j, 4);
@@ -132,14 +133,13 @@ struct Kernel {
         mass_difference = d.fourth;
       }
       if constexpr (!OneKind)
-        law = pack_laws(tables, [&](std::size_t c) {
-          return gather(input.constants + c, pairs.kind + p);
-        });
+        law = pack_laws(tables, [&](std::size_t c) { return gather(input.constants + c, pairs.kind + p); });
 
       const auto geometry = laws::pair_geometry(m);
       History history{load(memory), nothing};
       if constexpr (rolls) history.roll = load(memory + 24);
-      const auto force = laws::interact<true>(law, geometry, sizes(m, moving.inverse_mass, mass_difference), dt, history);
+      const auto force =
+          laws::interact<true>(law, geometry, sizes(m, moving.inverse_mass, mass_difference), dt, history);
       const auto touching = geometry.overlap > zero;
       store(select(touching, history.spring, nothing), memory);
       if constexpr (rolls) store(select(touching, history.roll, nothing), memory + 24);

@@ -16,7 +16,8 @@ void Selection::pad(std::size_t lanes, Offset pad_i, Offset pad_j, std::uint32_t
   }
 }
 
-void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin, Selection& out) {
+void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin,
+            Selection& out) {
   const Lanes twice_horizon = 2 * horizon, zero = 0.0, extra = margin;
   alignas(32) std::uint32_t key[8];
   out.reserve(from.count);

@@ -57,8 +57,8 @@ struct Images {
 };
 
 struct PairSpan {
-  const Offset *i, *j;        // readable up to the next multiple of eight
-  const std::uint32_t* key;   // place in the outer list of the section; nullptr: 0, 1, 2, ...
+  const Offset *i, *j;       // readable up to the next multiple of eight
+  const std::uint32_t* key;  // place in the outer list of the section; nullptr: 0, 1, 2, ...
   std::size_t count;
 };
 
@@ -79,7 +79,8 @@ struct Selection {
 };
 
 // The pairs that may come within reach + margin on their straight paths in the time `horizon`.
-void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin, Selection& out);
+void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin,
+            Selection& out);
 
 // r folded to the nearest image.
 template <class N>

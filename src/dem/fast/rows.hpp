@@ -71,8 +71,8 @@ struct Separation {
   Lanes reach;      // r_i + r_j
 };
 struct RelativeMotion {
-  Vec3Of<Lanes> v, spin_sum;               // v_i - v_j, omega_i + omega_j
-  Lanes size_difference, inverse_mass;     // r_i - r_j, 1/m_i + 1/m_j
+  Vec3Of<Lanes> v, spin_sum;            // v_i - v_j, omega_i + omega_j
+  Lanes size_difference, inverse_mass;  // r_i - r_j, 1/m_i + 1/m_j
 };
 
 #ifdef BAGNOLD_AVX512
@@ -155,7 +155,8 @@ inline RelativeMotion relative_motion(const double* velocity, const Offset* i, c
 // Half a row: v_i - v_j and r_i - r_j (first = 0), or omega_i - omega_j and 1/m_i - 1/m_j (first = 4).
 inline RowDifference difference(const double* velocity, const Offset* i, const Offset* j, std::size_t first) {
   const auto half = [&](const Offset* o, int k) {
-    return detail::halves(row_at(velocity, 2 * std::size_t{o[k]}) + first, row_at(velocity, 2 * std::size_t{o[k + 4]}) + first);
+    return detail::halves(row_at(velocity, 2 * std::size_t{o[k]}) + first,
+                          row_at(velocity, 2 * std::size_t{o[k + 4]}) + first);
   };
   Register row[4], out[4];
   for (int k = 0; k < 4; ++k) row[k] = half(i, k) - half(j, k);
@@ -217,7 +218,8 @@ inline Separation separation(const double* position, const Offset* i, const Offs
 inline RowDifference difference(const double* velocity, const Offset* i, const Offset* j, std::size_t first) {
   RowDifference d;
   for (int k = 0; k < Lanes::lanes; ++k) {
-    const double *a = row_at(velocity, 2 * std::size_t{i[k]}) + first, *b = row_at(velocity, 2 * std::size_t{j[k]}) + first;
+    const double *a = row_at(velocity, 2 * std::size_t{i[k]}) + first,
+                 *b = row_at(velocity, 2 * std::size_t{j[k]}) + first;
     d.xyz.x.set(k, a[0] - b[0]);
     d.xyz.y.set(k, a[1] - b[1]);
     d.xyz.z.set(k, a[2] - b[2]);

@@ -52,7 +52,7 @@ struct CgGaussian {
     for (int k = 0; k < n; ++k) {
       const double next = x * he - k * previous;
       previous = he;
-      he = -next / width;          // every derivative brings a factor -1/w
+      he = -next / width;  // every derivative brings a factor -1/w
       previous = -previous / width;
     }
     return he * g;

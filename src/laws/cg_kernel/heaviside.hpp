@@ -14,11 +14,13 @@ namespace bagnold::laws {
 // direction is `width`: c = w sqrt(3), 2 w, w sqrt(5).
 struct CgHeaviside {
   static constexpr std::string_view name = "heaviside";
-  static constexpr std::string_view summary = "constant inside a ball with the standard deviation of the width asked for";
+  static constexpr std::string_view summary =
+      "constant inside a ball with the standard deviation of the width asked for";
   static constexpr std::string_view source = "Weinhart et al. 2012, section 3.2.1 (any normalised function will do)";
   double width = 0.25;
   static constexpr auto fields() {
-    return std::tuple{field("width", "length", "standard deviation of the kernel in each direction (cut-off 1.7 to 2.2 w)",
+    return std::tuple{field("width", "length",
+                            "standard deviation of the kernel in each direction (cut-off 1.7 to 2.2 w)",
                             &CgHeaviside::width, positive())};
   }
 

@@ -19,8 +19,9 @@ struct CgLucy {
   static constexpr std::string_view source = "Lucy 1977, Astron. J. 82, 1013";
   double width = 0.25;
   static constexpr auto fields() {
-    return std::tuple{field("width", "length", "standard deviation of the kernel in each direction (cut-off 3.2 to 3.5 w)",
-                            &CgLucy::width, positive())};
+    return std::tuple{field("width", "length",
+                            "standard deviation of the kernel in each direction (cut-off 3.2 to 3.5 w)", &CgLucy::width,
+                            positive())};
   }
 
   static constexpr int expansion_terms = 7;  // a polynomial of degree 6 after two integrations: nothing is neglected

@@ -46,10 +46,12 @@ struct Linear {
   std::string damping_convention = "force";
   static constexpr auto fields() {
     return std::tuple{
-        field("stiffness", "force/length", "kn; or give collision_time and restitution", &Linear::stiffness, positive()),
+        field("stiffness", "force/length", "kn; or give collision_time and restitution", &Linear::stiffness,
+              positive()),
         field("damping", "mass/time (1/time per_reduced_mass)", "gamma_n", &Linear::damping, non_negative()),
         field("collision_time", "time", "tc of a head-on pair", &Linear::collision_time, positive()),
-        field("restitution", "-", "eps of a head-on pair", &Linear::restitution, Range{.lo = 0, .hi = 1, .lo_open = true}),
+        field("restitution", "-", "eps of a head-on pair", &Linear::restitution,
+              Range{.lo = 0, .hi = 1, .lo_open = true}),
         field("reduced_mass", "mass", "m_i m_j/(m_i + m_j) at which (tc, eps) hold; auto: two mean flowing grains",
               &Linear::reduced_mass, positive()),
         field("damping_convention", "-", "force: f = kn delta - gamma v; per_reduced_mass: f = kn delta - gamma m_ij v",

@@ -21,15 +21,15 @@ struct PairMotion {
 
 template <class N>
 struct PairGeometry {
-  Vec3Of<N> n, v, slip, spin;   // unit normal from j to i; v_ij; slip velocity v^t; relative rolling velocity
-  N overlap, vn, turn_rate;     // delta_n; v_ij . n; 1/|r_ij|, 0 at a plane
-  N arm_i, arm_j;               // centre to contact point, (d - delta_n)/2
+  Vec3Of<N> n, v, slip, spin;  // unit normal from j to i; v_ij; slip velocity v^t; relative rolling velocity
+  N overlap, vn, turn_rate;    // delta_n; v_ij . n; 1/|r_ij|, 0 at a plane
+  N arm_i, arm_j;              // centre to contact point, (d - delta_n)/2
 };
 
 // What the contact remembers.
 template <class N>
 struct PairHistory {
-  Vec3Of<N> spring, roll;       // tangential displacement delta_t, rolling angle; both 0 when the contact forms
+  Vec3Of<N> spring, roll;  // tangential displacement delta_t, rolling angle; both 0 when the contact forms
 };
 
 template <class N>
@@ -39,7 +39,7 @@ struct PairForce {
   N normal_damping;                            // dashpot part of `normal`
   Vec3Of<N> tangential_damping, roll_damping;  // dashpot parts of the tangential force and of the rolling torque
   N tangential_stiffness, roll_stiffness;
-  N slide_loss, roll_loss;                     // spring energy the sliders took while the springs were advanced
+  N slide_loss, roll_loss;  // spring energy the sliders took while the springs were advanced
 };
 
 template <class Normal, class Tangential, class Rolling>
@@ -170,8 +170,8 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
 
 // The interaction of a touching pair (overlap > 0).
 template <bool Advance, class N, class Normal, class Tangential, class Rolling>
-PairForce<N> interact(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g, const PairSize<N>& size,
-                      N dt, PairHistory<N>& history) {
+PairForce<N> interact(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g,
+                      const PairSize<N>& size, N dt, PairHistory<N>& history) {
   PairForce<N> out{};
   const NormalResponse<N> normal = law.normal.respond(g.overlap, size);
   out.normal_damping = N(0) - normal.damping * g.vn;

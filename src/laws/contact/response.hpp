@@ -20,16 +20,21 @@ struct PairSize {
   }
 };
 
-inline PairSize<double> sizes(double inverse_radius_i, double inverse_radius_j, double inverse_mass_i, double inverse_mass_j) {
-  return {1 / (inverse_radius_i + inverse_radius_j), inverse_mass_i + inverse_mass_j, inverse_radius_i, inverse_radius_j,
-          inverse_mass_i, inverse_mass_j};
+inline PairSize<double> sizes(double inverse_radius_i, double inverse_radius_j, double inverse_mass_i,
+                              double inverse_mass_j) {
+  return {1 / (inverse_radius_i + inverse_radius_j),
+          inverse_mass_i + inverse_mass_j,
+          inverse_radius_i,
+          inverse_radius_j,
+          inverse_mass_i,
+          inverse_mass_j};
 }
 
 // What automatic parameters refer to: two mean flowing grains.
 struct NominalPair {
   double reduced_mass = 0;
-  bool constant_stiffness = false;       // kn and gamma_n below have a meaning
-  double stiffness = 0, damping = 0;     // kn, gamma_n (as a force) of the normal law at that mass
+  bool constant_stiffness = false;    // kn and gamma_n below have a meaning
+  double stiffness = 0, damping = 0;  // kn, gamma_n (as a force) of the normal law at that mass
 };
 
 template <class N>

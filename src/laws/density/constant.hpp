@@ -14,7 +14,8 @@ struct ConstantDensity {
   double phi = 0.58;
 
   static constexpr auto fields() {
-    return std::tuple{field("phi", "1", "solid volume fraction", &ConstantDensity::phi, Range{.lo = 0, .hi = 1, .lo_open = true})};
+    return std::tuple{
+        field("phi", "1", "solid volume fraction", &ConstantDensity::phi, Range{.lo = 0, .hi = 1, .lo_open = true})};
   }
   double volume_fraction(double /*theta_deg*/) const { return phi; }
 };

@@ -17,9 +17,10 @@ struct ExponentialAngleDensity {
 
   static constexpr auto fields() {
     using L = ExponentialAngleDensity;
-    return std::tuple{field("c0", "1", "volume fraction of slow flow", &L::c0, Range{.lo = 0, .hi = 1, .lo_open = true}),
-                      field("c1_deg", "deg", "angle over which the flow dilates", &L::c1_deg, positive()),
-                      field("c2_deg", "deg", "angle at which the dilation reaches 1", &L::c2_deg)};
+    return std::tuple{
+        field("c0", "1", "volume fraction of slow flow", &L::c0, Range{.lo = 0, .hi = 1, .lo_open = true}),
+        field("c1_deg", "deg", "angle over which the flow dilates", &L::c1_deg, positive()),
+        field("c2_deg", "deg", "angle at which the dilation reaches 1", &L::c2_deg)};
   }
   double volume_fraction(double theta_deg) const { return c0 - std::exp((theta_deg - c2_deg) / c1_deg); }
 };

@@ -16,8 +16,9 @@ struct Rational {
   static constexpr std::string_view source = "tangent to Minatti & Paris 2015, eq. 8, at i = 0";
   double phi_max = 0.6, phi_min = 0.5;
   static constexpr auto fields() {
-    return std::tuple{field("phi_max", "", "volume fraction at rest", &Rational::phi_max, open(0, 1)),
-                      field("phi_min", "", "volume fraction the tangent at rest reaches at i = 1", &Rational::phi_min, open(0, 1))};
+    return std::tuple{
+        field("phi_max", "", "volume fraction at rest", &Rational::phi_max, open(0, 1)),
+        field("phi_min", "", "volume fraction the tangent at rest reaches at i = 1", &Rational::phi_min, open(0, 1))};
   }
   double phi(double i) const { return phi_max / (1 + (1 - phi_min / phi_max) * i); }
 

@@ -17,14 +17,17 @@ struct CompressibleGrains {
   double grain_density = 2600, compressibility = 4.1e-5;
   static constexpr auto fields() {
     using S = CompressibleGrains;
-    return std::tuple{field("grain_density", "kg/m^3", "rho_s0, density of the grains under no load", &S::grain_density, positive()),
-                      field("compressibility", "1/Pa", "Kt of the grains", &S::compressibility, positive())};
+    return std::tuple{
+        field("grain_density", "kg/m^3", "rho_s0, density of the grains under no load", &S::grain_density, positive()),
+        field("compressibility", "1/Pa", "Kt of the grains", &S::compressibility, positive())};
   }
   // i = shear/y with shear = gamma d0 sqrt(Kt rho_s0).
   double shear_scale(double d0) const { return d0 * std::sqrt(compressibility * grain_density); }
   double sound_speed(double phi_max) const { return 1 / std::sqrt(compressibility * phi_max * grain_density); }
   template <class T>
-  T pressure(T y) const { return y * y / compressibility; }
+  T pressure(T y) const {
+    return y * y / compressibility;
+  }
 };
 
 }  // namespace bagnold::laws::eos

@@ -24,8 +24,8 @@ inline bool all_below(const Octet& small, const Octet& large) {
 // it is clipped to an upper bound because f' may be tiny at `lower`. Residual of the root: relative 1e-12 of y.
 template <class T>
 T largest_root(const Cubic<T>& f, T guess) {
-  const T root4 = sqrt(T(sqrt(T(-f.c0))));                       // >= cube root of -c0 where that is < 1
-  const T upper = f.bulk + larger(root4, T(root4 * root4));      // root4^2 >= the cube root where it is > 1
+  const T root4 = sqrt(T(sqrt(T(-f.c0))));                   // >= cube root of -c0 where that is < 1
+  const T upper = f.bulk + larger(root4, T(root4 * root4));  // root4^2 >= the cube root where it is > 1
   T y = larger(smaller(guess, upper), f.lower);
   for (int iteration = 0; iteration < 60; ++iteration) {
     const T value = ((y + f.c2) * y + f.c1) * y + f.c0;

@@ -23,7 +23,8 @@ struct Coulomb {
   double delta_deg = 20;
 
   static constexpr auto fields() {
-    return std::tuple{field("delta_deg", "deg", "basal friction angle", &Coulomb::delta_deg, Range{.lo = 0, .hi = 90, .hi_open = true})};
+    return std::tuple{field("delta_deg", "deg", "basal friction angle", &Coulomb::delta_deg,
+                            Range{.lo = 0, .hi = 90, .hi_open = true})};
   }
 
   // The law with its tangents taken, for loops. h: thickness (any unit of length), F = |u|/sqrt(g h cos theta).

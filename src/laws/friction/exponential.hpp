@@ -24,7 +24,10 @@ struct ExponentialFriction {
 
   struct Prepared {
     double mu1, delta_mu, a_per_h, gamma;
-    double excess(double F) const { const double y = F + gamma; return y > 1e-12 ? y : 1e-12; }
+    double excess(double F) const {
+      const double y = F + gamma;
+      return y > 1e-12 ? y : 1e-12;
+    }
     double mu(double h, double F) const { return mu1 + delta_mu * std::exp(-a_per_h * h / excess(F)); }
     MuAndSlope mu_and_slope(double h, double F) const {
       const double y = excess(F), a = a_per_h * h, part = delta_mu * std::exp(-a / y);

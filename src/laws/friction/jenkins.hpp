@@ -26,12 +26,17 @@ struct Jenkins {
   // from mu2 falls monotonically on the root; eight steps reach round-off for any a, y.
   struct Prepared {
     double mu1, mu2, a_per_h, gamma;
-    double excess(double F) const { const double y = F + gamma; return 0.5 * (y + std::abs(y)); }  // max(y, 0)
+    double excess(double F) const {
+      const double y = F + gamma;
+      return 0.5 * (y + std::abs(y));
+    }  // max(y, 0)
     static constexpr int newton_steps = 8;
     [[gnu::always_inline]] double mu(double h, double F) const {
       const double a = a_per_h * h + 1e-300, b = excess(F) * mu1 * mu1;
       double m = mu2;
-      unrolled<newton_steps>([&](int) __attribute__((always_inline)) { m -= (a * (m - mu1) * m * m - b * (mu2 - m)) / (a * m * (3 * m - 2 * mu1) + b); });
+      unrolled<newton_steps>([&](int) __attribute__((always_inline)) {
+        m -= (a * (m - mu1) * m * m - b * (mu2 - m)) / (a * m * (3 * m - 2 * mu1) + b);
+      });
       return m;
     }
     MuAndSlope mu_and_slope(double h, double F) const {
@@ -39,9 +44,7 @@ struct Jenkins {
       return {m, mu1 * mu1 * (mu2 - m) / (a * m * (3 * m - 2 * mu1) + b)};
     }
   };
-  Prepared prepared(double /*g*/) const {
-    return {tan_deg(delta1_deg), tan_deg(delta2_deg), beta / (A * d), gamma};
-  }
+  Prepared prepared(double /*g*/) const { return {tan_deg(delta1_deg), tan_deg(delta2_deg), beta / (A * d), gamma}; }
 };
 
 }  // namespace bagnold::laws

@@ -24,7 +24,10 @@ struct PouliquenForterre {
   // The pole of eq. 37 at F = -gamma (gamma < 0) is removed: below it the friction is that of delta1.
   struct Prepared {
     double mu1, delta_mu, a_per_h, gamma;  // a = beta h/(A d)
-    double excess(double F) const { const double y = F + gamma; return 0.5 * (y + std::abs(y)); }  // max(y, 0)
+    double excess(double F) const {
+      const double y = F + gamma;
+      return 0.5 * (y + std::abs(y));
+    }  // max(y, 0)
     [[gnu::always_inline]] double mu(double h, double F) const { return mu_and_slope(h, F).mu; }
     [[gnu::always_inline]] MuAndSlope mu_and_slope(double h, double F) const {
       const double y = excess(F), a = a_per_h * h, q = 1 / (y + a + 1e-150);

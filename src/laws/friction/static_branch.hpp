@@ -10,18 +10,22 @@ namespace bagnold::laws {
 struct StaticBranch {
   static constexpr std::string_view name = "static-branch";
   static constexpr std::string_view summary =
-      "F < F*: mu = (F/F*) (mu_dyn(h, F*) - mu_start(h)) + mu_start(h), mu_start = tan(delta3) + (tan(delta2) - tan(delta1))/(1 + h/L)";
+      "F < F*: mu = (F/F*) (mu_dyn(h, F*) - mu_start(h)) + mu_start(h), mu_start = tan(delta3) + (tan(delta2) - "
+      "tan(delta1))/(1 + h/L)";
   static constexpr std::string_view source = "Pouliquen & Forterre 2002; Edwards et al. 2019, with exponent 1";
   double froude_star = 0, delta1_deg = 17.708, delta2_deg = 32.780, delta3_deg = 18.708, length = 3.355;
 
   static constexpr auto fields() {
     using S = StaticBranch;
-    return std::tuple{
-        field("froude_star", "1", "smallest Froude number of steady flow; 0: no static branch", &S::froude_star, non_negative()),
-        field("delta1_deg", "deg", "stopping angle of a thick layer", &S::delta1_deg, Range{.lo = 0, .hi = 90, .hi_open = true}),
-        field("delta2_deg", "deg", "stopping angle of a vanishing layer", &S::delta2_deg, Range{.lo = 0, .hi = 90, .hi_open = true}),
-        field("delta3_deg", "deg", "starting angle of a thick layer", &S::delta3_deg, Range{.lo = 0, .hi = 90, .hi_open = true}),
-        field("length", "length", "thickness scale of the starting angle", &S::length, positive())};
+    return std::tuple{field("froude_star", "1", "smallest Froude number of steady flow; 0: no static branch",
+                            &S::froude_star, non_negative()),
+                      field("delta1_deg", "deg", "stopping angle of a thick layer", &S::delta1_deg,
+                            Range{.lo = 0, .hi = 90, .hi_open = true}),
+                      field("delta2_deg", "deg", "stopping angle of a vanishing layer", &S::delta2_deg,
+                            Range{.lo = 0, .hi = 90, .hi_open = true}),
+                      field("delta3_deg", "deg", "starting angle of a thick layer", &S::delta3_deg,
+                            Range{.lo = 0, .hi = 90, .hi_open = true}),
+                      field("length", "length", "thickness scale of the starting angle", &S::length, positive())};
   }
 };
 
@@ -31,8 +35,12 @@ struct BasalFriction {
   Dynamic dynamic;
   double froude_star, inverse_froude_star, mu3, delta_mu, length;
   BasalFriction(const Dynamic& law, const StaticBranch& s)
-      : dynamic(law), froude_star(s.froude_star), inverse_froude_star(s.froude_star > 0 ? 1 / s.froude_star : 0), mu3(tan_deg(s.delta3_deg)),
-        delta_mu(tan_deg(s.delta2_deg) - tan_deg(s.delta1_deg)), length(s.length) {}
+      : dynamic(law),
+        froude_star(s.froude_star),
+        inverse_froude_star(s.froude_star > 0 ? 1 / s.froude_star : 0),
+        mu3(tan_deg(s.delta3_deg)),
+        delta_mu(tan_deg(s.delta2_deg) - tan_deg(s.delta1_deg)),
+        length(s.length) {}
 
   double mu_start(double h) const {
     return froude_star > 0 ? mu3 + delta_mu * (length / (length + h)) : dynamic.mu(h, 0);

@@ -14,7 +14,8 @@ struct Papanastasiou {
   static constexpr std::string_view source = "Papanastasiou 1987; Minatti & Paris 2015, eq. 48";
   double m0 = 1.2;
   static constexpr auto fields() {
-    return std::tuple{field("m0", "s", "time scale m; larger is closer to a yield stress", &Papanastasiou::m0, positive())};
+    return std::tuple{
+        field("m0", "s", "time scale m; larger is closer to a yield stress", &Papanastasiou::m0, positive())};
   }
   template <class T>
   T viscosity(T tau_y, T eta0, T gamma) const {

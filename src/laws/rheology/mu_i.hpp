@@ -14,9 +14,10 @@ struct MuI {
   static constexpr std::string_view source = "Minatti & Paris 2015, eq. 7; Jop et al. 2006";
   double static_angle_deg = 30.5, limit_angle_deg = 51.3, i0 = 2.65;
   static constexpr auto fields() {
-    return std::tuple{field("static_angle_deg", "deg", "atan(mu_s), friction angle at rest", &MuI::static_angle_deg, open(0, 89)),
-                      field("limit_angle_deg", "deg", "atan(mu_2), friction angle at large i", &MuI::limit_angle_deg, open(0, 89)),
-                      field("i0", "", "inertial number half-way between the two", &MuI::i0, positive())};
+    return std::tuple{
+        field("static_angle_deg", "deg", "atan(mu_s), friction angle at rest", &MuI::static_angle_deg, open(0, 89)),
+        field("limit_angle_deg", "deg", "atan(mu_2), friction angle at large i", &MuI::limit_angle_deg, open(0, 89)),
+        field("i0", "", "inertial number half-way between the two", &MuI::i0, positive())};
   }
   double static_friction() const { return std::tan(static_angle_deg * M_PI / 180); }
   double limit_friction() const { return std::tan(limit_angle_deg * M_PI / 180); }
@@ -24,7 +25,9 @@ struct MuI {
   struct Excess {
     double span, i0;
     template <class T>
-    T operator()(T i) const { return span / (i0 + i); }
+    T operator()(T i) const {
+      return span / (i0 + i);
+    }
   };
   Excess excess() const { return {limit_friction() - static_friction(), i0}; }
   double mu(double i) const { return static_friction() + i * excess()(i); }

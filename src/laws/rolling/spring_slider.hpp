@@ -32,8 +32,8 @@ struct SpringSlider {
   static constexpr std::string_view source = "Ai et al. 2011, model C, eqs 12-17";
   double rolling_friction = 0.1, rolling_damping = 0.3;
   static constexpr auto fields() {
-    return std::tuple{field("rolling_friction", "-", "mu_r: largest torque / (R |f^n|)", &SpringSlider::rolling_friction,
-                            non_negative()),
+    return std::tuple{field("rolling_friction", "-", "mu_r: largest torque / (R |f^n|)",
+                            &SpringSlider::rolling_friction, non_negative()),
                       field("rolling_damping", "-", "eta: rolling damping / critical", &SpringSlider::rolling_damping,
                             non_negative())};
   }

@@ -9,7 +9,8 @@ namespace bagnold::laws {
 
 struct ConstantShapeFactor {
   static constexpr std::string_view name = "constant";
-  static constexpr std::string_view summary = "alpha = mean(u^2)/mean(u)^2: 1 plug, 1.2 parabolic, 1.25 Bagnold, 4/3 linear";
+  static constexpr std::string_view summary =
+      "alpha = mean(u^2)/mean(u)^2: 1 plug, 1.2 parabolic, 1.25 Bagnold, 4/3 linear";
   static constexpr std::string_view source = "Weinhart et al. 2012, section 4.1 and table 2";
   double alpha = 1;
 

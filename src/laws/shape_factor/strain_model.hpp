@@ -9,18 +9,22 @@ namespace bagnold::laws {
 struct StrainModelShapeFactor {
   static constexpr std::string_view name = "strain-model";
   static constexpr std::string_view summary =
-      "alpha(h, theta) of Bagnold's profile with a base layer b = d_lambda d h_stop(theta)/h and a linear surface layer 5 d thick";
+      "alpha(h, theta) of Bagnold's profile with a base layer b = d_lambda d h_stop(theta)/h and a linear surface "
+      "layer 5 d thick";
   static constexpr std::string_view source = "Weinhart et al. 2012, eq. 54 and table 2";
   double base_layer = 6.678, surface_layer = 5, d = 1, delta1_deg = 17.708, delta2_deg = 32.780, A = 3.355;
 
   static constexpr auto fields() {
     using L = StrainModelShapeFactor;
-    return std::tuple{field("base_layer", "1", "d_lambda: thickness of the base layer at h = h_stop, in d", &L::base_layer, non_negative()),
-                      field("surface_layer", "d", "thickness of the layer of constant strain at the surface", &L::surface_layer, non_negative()),
-                      field("d", "length", "grain diameter", &L::d, positive()),
-                      field("delta1_deg", "deg", "delta1 of the stopping height for lambda = 1", &L::delta1_deg, open(0, 90)),
-                      field("delta2_deg", "deg", "delta2 of the stopping height for lambda = 1", &L::delta2_deg, open(0, 90)),
-                      field("A", "d", "A of the stopping height for lambda = 1", &L::A, positive())};
+    return std::tuple{
+        field("base_layer", "1", "d_lambda: thickness of the base layer at h = h_stop, in d", &L::base_layer,
+              non_negative()),
+        field("surface_layer", "d", "thickness of the layer of constant strain at the surface", &L::surface_layer,
+              non_negative()),
+        field("d", "length", "grain diameter", &L::d, positive()),
+        field("delta1_deg", "deg", "delta1 of the stopping height for lambda = 1", &L::delta1_deg, open(0, 90)),
+        field("delta2_deg", "deg", "delta2 of the stopping height for lambda = 1", &L::delta2_deg, open(0, 90)),
+        field("A", "d", "A of the stopping height for lambda = 1", &L::A, positive())};
   }
   static constexpr bool is_constant = false;
 
@@ -39,9 +43,9 @@ struct StrainModelShapeFactor {
     double t = 1 - surface_layer * d / h_safe;
     t = t > b ? t : b;
     const double s_b = std::sqrt(1 - b), s_t = std::sqrt(1 - t), third = 1.0 / 3;
-    const double q = 1 - b, r = 1 - t;                       // depths below the surface of the two interfaces
+    const double q = 1 - b, r = 1 - t;  // depths below the surface of the two interfaces
     const double u_b = 2 * third * s_b * b;
-    const double c = u_b + 2 * third * q * s_b;              // mid layer: u = c - (2/3) (1-z)^(3/2)
+    const double c = u_b + 2 * third * q * s_b;  // mid layer: u = c - (2/3) (1-z)^(3/2)
     const double u_t = c - 2 * third * r * s_t;
     // base: integral of (z/3 + z^2/(3b)) is b^2 (1/6 + 1/9); of its square b^3 (1/27 + 1/18 + 1/45)
     const double base1 = s_b * b * b * (5.0 / 18), base2 = q * b * b * b * (31.0 / 270);

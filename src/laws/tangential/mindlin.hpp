@@ -26,11 +26,11 @@ struct Mindlin {
   static constexpr std::string_view source = "Mindlin 1949; Elata & Berryman 1996";
   double poisson_ratio = 0.3, tangential_damping_ratio = 1, friction = 0.5;
   static constexpr auto fields() {
-    return std::tuple{field("poisson_ratio", "-", "Poisson's ratio of the grains", &Mindlin::poisson_ratio,
-                            Range{.lo = -1, .hi = 0.5, .lo_open = true}),
-                      field("tangential_damping_ratio", "-", "gamma_t/gamma_n", &Mindlin::tangential_damping_ratio,
-                            non_negative()),
-                      field("friction", "-", "Coulomb friction mu", &Mindlin::friction, non_negative())};
+    return std::tuple{
+        field("poisson_ratio", "-", "Poisson's ratio of the grains", &Mindlin::poisson_ratio,
+              Range{.lo = -1, .hi = 0.5, .lo_open = true}),
+        field("tangential_damping_ratio", "-", "gamma_t/gamma_n", &Mindlin::tangential_damping_ratio, non_negative()),
+        field("friction", "-", "Coulomb friction mu", &Mindlin::friction, non_negative())};
   }
   using Constants = std::variant<MindlinTangential<double>>;
   Constants constants(const NominalPair&) const {

@@ -10,7 +10,8 @@ namespace bagnold::laws::viscous {
 // Conserves linear and angular momentum; exact for no lattice: 0.81 to 1.14 of the true shear stress at h/dp = 1.3.
 struct Cleary {
   static constexpr std::string_view name = "minatti2015";
-  static constexpr std::string_view summary = "pair forces along r_ij, uncorrected gradients, pressure p_i/rho_i^2 + p_j/rho_j^2";
+  static constexpr std::string_view summary =
+      "pair forces along r_ij, uncorrected gradients, pressure p_i/rho_i^2 + p_j/rho_j^2";
   static constexpr std::string_view source = "Cleary 1998; Minatti & Paris 2015, eqs 26, 27, 31";
   static constexpr bool corrected = false;
   static constexpr auto fields() { return std::tuple<>{}; }

@@ -12,15 +12,16 @@ namespace bagnold::laws::viscous {
 // viscosity; mu(i) flow is well-posed only if zeta outweighs it. Pressure is the adjoint of tr L. Exact for linear velocity fields on any particle arrangement (docs/sph.md).
 struct Variational {
   static constexpr std::string_view name = "variational";
-  static constexpr std::string_view summary = "pressure and stress from one energy with corrected gradients: passes the shear patch test";
+  static constexpr std::string_view summary =
+      "pressure and stress from one energy with corrected gradients: passes the shear patch test";
   static constexpr std::string_view source = "docs/sph.md, after Bonet & Lok 1999";
   static constexpr bool corrected = true;
   double residual = 1, bulk = 3;
   static constexpr auto fields() {
-    return std::tuple{field("residual", "", "weight of the term that removes what the linear field misses", &Variational::residual,
-                            positive()),
-                      field("bulk", "", "bulk over shear viscosity; below 2 short waves grow in fine particles", &Variational::bulk,
-                            non_negative())};
+    return std::tuple{field("residual", "", "weight of the term that removes what the linear field misses",
+                            &Variational::residual, positive()),
+                      field("bulk", "", "bulk over shear viscosity; below 2 short waves grow in fine particles",
+                            &Variational::bulk, non_negative())};
   }
   double coefficient(int dimensions) const { return residual * 2.0 * (dimensions + 2); }
 };
