@@ -13,7 +13,7 @@ namespace {
 const std::vector<PlotData> data{{"points", {{0, 1, 2}, {0, std::nan(""), 4}}}};
 
 TEST(Gnuplot, DrawsInTheFormatOfTheName) {
-  if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_TRUE(have_gnuplot()) << "scripts/install-deps.sh installs it";
   const Scratch dir;
   for (const auto& [name, begin] : {std::pair{"it's.svg", "<?xml"}, {"a.png", "\x89PNG"}, {"a.pdf", "%PDF"}}) {
     plot(dir / name, "plot $points using 1:2 with linespoints title 'u'", data);
@@ -23,7 +23,7 @@ TEST(Gnuplot, DrawsInTheFormatOfTheName) {
 }
 
 TEST(Gnuplot, ItsErrorsAreReported) {
-  if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_TRUE(have_gnuplot()) << "scripts/install-deps.sh installs it";
   const Scratch dir;
   EXPECT_TRUE(contains(error_of<IoError>([&] { plot(dir / "a.svg", "plot $nothing", data); }), "gnuplot failed"));
   EXPECT_TRUE(contains(error_of<IoError>([&] { plot(dir / "a.txt", "", data); }), ".svg, .png or .pdf"));

@@ -126,7 +126,7 @@ TEST_F(Report, WidthsAndSteadinessAreDrawnWhenTheyWereMeasured) {
 }
 
 TEST_F(Report, IsOneFileWithEverythingInIt) {
-  if (!io::have_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_TRUE(io::have_gnuplot()) << "scripts/install-deps.sh installs it";
   fs::copy(root / "steady", root / "other", fs::copy_options::recursive);
   write_report({root / "steady", root / "other"}, root / "report.html", {"png"});
   const auto html = io::read_file(root / "report.html");
