@@ -75,11 +75,12 @@ void prepare(DemState& state, const ContactLaws& laws) {
   if (state.keep_ledger) balance_ledger(state, laws);
 }
 
-void advance(DemState& state, const ContactLaws& laws, std::int64_t steps) {
-  if (fast::supports(state))
-    fast::advance(state, laws, steps);
-  else
-    advance_plain(state, laws, steps);
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
+  if (fast::supports(state)) return fast::advance(state, laws, steps, watch);
+  for (const std::int64_t end = state.step + steps; state.step < end;) {
+    advance_plain(state, laws, watch.next_stop(state.step, end) - state.step);
+    if (watch.sees(state.step)) watch.plain(state);
+  }
 }
 
 void advance_plain(DemState& state, const ContactLaws& laws, std::int64_t steps) {

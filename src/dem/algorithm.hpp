@@ -1,11 +1,36 @@
 // The time loop: velocity Verlet with contact springs, Weinhart et al. 2012, algorithm 1.
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 
 #include "dem/contact_model.hpp"
 #include "dem/state.hpp"
 
 namespace bagnold::dem {
+
+namespace fast {
+struct Engine;
+}
+
+// Looks at a run from inside, after steps first, first + every, ... up to last; the engine at work calls its function
+// and neither knows what it is for nor is changed by it.
+struct Watch {
+  std::int64_t first = 0, last = -1, every = 1;
+  std::function<void(const DemState&)> plain;
+  std::function<void(const fast::Engine&, const DemState&)> fast;  // of the state only what never changes is current
+
+  // Next step after `step` that is looked at; none if it is later than `last`.
+  std::int64_t next(std::int64_t step) const {
+    return step < first ? first : first + ((step - first) / every + 1) * every;
+  }
+  bool sees(std::int64_t step) const { return step >= first && step <= last && (step - first) % every == 0; }
+  // `end`, or where to stop before it to look.
+  std::int64_t next_stop(std::int64_t step, std::int64_t end) const {
+    const std::int64_t look = next(step);
+    return look <= last ? std::min(look, end) : end;
+  }
+};
 
 // Makes a state of positions and velocities at t = 0 ready to step: neighbour list, springs at 0, initial forces.
 // Throws UnphysicalError for a state that cannot be stepped (dt, masses, species, walls).
@@ -13,7 +38,7 @@ void prepare(DemState& state, const ContactLaws& laws);
 
 // Takes `steps` steps. Allocates only when the neighbour list is rebuilt. Throws NumericalError. By the fast engine
 // (dem/fast/engine.hpp) where it can, otherwise plainly; their trajectories differ by round-off only.
-void advance(DemState& state, const ContactLaws& laws, std::int64_t steps);
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
 
 // Algorithm 1 step by step: the reference.
 void advance_plain(DemState& state, const ContactLaws& laws, std::int64_t steps);

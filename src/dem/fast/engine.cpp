@@ -207,7 +207,7 @@ void rebuild(Engine& engine, DemState& state) {
 
 }  // namespace
 
-void advance(DemState& state, const ContactLaws& laws, std::int64_t steps) {
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
   if (!state.engine.held || !matches(*std::static_pointer_cast<Engine>(state.engine.held), state, laws)) {
     auto fresh = std::make_shared<Engine>();
     load(*fresh, state, laws);
@@ -221,10 +221,12 @@ void advance(DemState& state, const ContactLaws& laws, std::int64_t steps) {
       rebuild(engine, state);
       level = static_cast<int>(engine.step % engine.ring.levels);
     }
-    const auto count = static_cast<int>(std::min<std::int64_t>(engine.ring.levels - level, end - engine.step));
+    const std::int64_t stop = watch.next_stop(engine.step, end);
+    const auto count = static_cast<int>(std::min<std::int64_t>(engine.ring.levels - level, stop - engine.step));
     pass(engine, level, level + count);
     engine.step += count;
     check(engine, state);
+    if (watch.sees(engine.step)) watch.fast(engine, state);
   }
   store(engine, state);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/algorithm.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/fast/kernel.hpp"
 #include "dem/fast/lists.hpp"
@@ -93,7 +94,7 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws);
 void store(const Engine& engine, DemState& state);
 
 // As dem::advance, for a state it supports.
-void advance(DemState& state, const ContactLaws& laws, std::int64_t steps);
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
 
 // Makes the lists of a section that no longer hold anew, at the present positions.
 void refresh(Engine& engine, std::size_t section, Scratch& scratch);
