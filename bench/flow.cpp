@@ -1,217 +1,38 @@
-// Whole runs of the developed chute flow (H = 20, theta = 24 deg, lambda = 1) in one, eight and sixty-four times the
-// area, and the same state in LAMMPS when an executable `lmp` is there: the same contact law, the same step, rounds of
-// both in turn, CPU time only. Prints a table and appends to performance.csv in the working directory.
+// Whole runs of chute flows, one core, CPU time: the fast engine, the plain one and LAMMPS in rounds by turns, then
+// unequal grains and Hertz contacts against equal grains with the linear law, threads and memory. Prints tables and
+// appends to performance.csv in the working directory.
 //
-//   bench_flow [STATE]   STATE: lines `type x y z vx vy vz wx wy wz`, type 1 flows, 2 is fixed, of a 20 x 10 box;
-//                        without it the flow is developed here once and kept in bench-chute.state.
-#include <fmt/core.h>
-#include <sys/resource.h>
+//   bench_flow [--quick] [STATE]   STATE: another flow for the first table (format: chute_flow.hpp)
+//                                  --quick: without the steady flow, which takes minutes to reach once
+#include <sys/wait.h>
 #include <unistd.h>
+#include <x86intrin.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <numbers>
-#include <sstream>
-#include <string>
+#include <chrono>
+#include <cstring>
+#include <thread>
 
+#include "chute_flow.hpp"
 #include "core/parallel.hpp"
-#include "core/random.hpp"
 #include "core/version.hpp"
-#include "dem/algorithm.hpp"
-#include "dem/contacts.hpp"
-#include "dem/fast/engine.hpp"
+#include "lammps.hpp"
 
 namespace {
 using namespace bagnold;
-using namespace bagnold::dem;
+using namespace bagnold::bench;
+using dem::ContactLaws;
+using dem::DemState;
 
-constexpr double length = 20, width = 10, angle = 24 * std::numbers::pi / 180, kn = 2e5, gamma_n = 25;
+double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-ContactLaws chute_laws() {
-  laws::Linear normal;
-  normal.stiffness = kn;
-  normal.damping = gamma_n;
-  return compile(uniform_model({"grain"}, {normal, laws::LinearHistory{}, laws::NoRollingResistance{}}), 0.5);
-}
-
-struct Grain {
-  int type;
-  Vec3 x, v, omega;
-};
-
-DemState make_state(const std::vector<Grain>& grains, int nx, int ny) {
-  DemState s;
-  Grains& g = s.grains;
-  for (const int type : {1, 2})
-    for (const Grain& p : grains)
-      for (int k = 0; k < nx * ny && p.type == type; ++k) {
-        g.x.push_back(p.x + Vec3{k / ny * length, k % ny * width, 0});
-        g.v.push_back(p.v);
-        g.omega.push_back(p.omega);
-        g.flowing += type == 1;
-      }
-  g.diameter.assign(g.x.size(), 1);
-  g.mass.assign(g.x.size(), 1);
-  g.inertia.assign(g.x.size(), 0.1);
-  g.species.assign(g.x.size(), 0);
-  for (std::size_t i = 0; i < g.x.size(); ++i) g.id.push_back(static_cast<std::int64_t>(i));
-  s.box = {{0, 0, 0}, {nx * length, ny * width, 1}, {true, true, false}};
-  s.gravity = {std::sin(angle), 0, -std::cos(angle)};
-  s.dt = 1e-4;
-  return s;
-}
-
-// A state of the box as grains, full-step velocities.
-std::vector<Grain> grains_of(const DemState& s) {
-  std::vector<Grain> grains;
-  for (std::int64_t i = 0; i < s.grains.size(); ++i)
-    grains.push_back({i < s.grains.flowing ? 1 : 2, wrap(s.box, s.grains.x[static_cast<std::size_t>(i)]),
-                      full_step_velocity(s, i), full_step_omega(s, i)});
-  return grains;
-}
-
-// A lattice of twenty layers with Bagnold's profile over a rough bed, left to flow for 20 time units.
-std::vector<Grain> develop() {
-  std::vector<Grain> start;
-  std::uint64_t item = 0;
-  const auto u = [&](std::uint32_t draw) { return random::uniform(1, random::Stream::perturbation, item, draw) - 0.5; };
-  for (int k = 0; k < 4000; ++k, ++item) {
-    const double z = k / 200;
-    start.push_back({1,
-                     {k % 20 + 0.04 * u(0), k / 20 % 10 + 0.04 * u(1), z + 1 + 0.04 * u(2)},
-                     {5 * (1 - std::pow(1 - z / 20, 1.5)) + 0.5 * u(3), 0.5 * u(4), 0.5 * u(5)},
-                     {}});
-  }
-  for (int k = 0; k < 288; ++k, ++item)
-    start.push_back({2, {k % 24 / 1.2 + 0.2 * u(0), k / 24 / 1.2 + 0.2 * u(1), 0.6 * u(2) - 0.3}, {}, {}});
-  DemState s = make_state(start, 1, 1);
-  const ContactLaws laws = chute_laws();
-  prepare(s, laws);
-  advance(s, laws, 200000);
-  return grains_of(s);
-}
-
-void write(const std::string& name, const std::vector<Grain>& grains) {
-  std::ofstream file(name);
-  for (const Grain& g : grains)
-    file << fmt::format("{} {} {} {} {} {} {} {} {} {}\n", g.type, g.x.x, g.x.y, g.x.z, g.v.x, g.v.y, g.v.z, g.omega.x,
-                        g.omega.y, g.omega.z);
-}
-
-std::vector<Grain> read(const std::string& name) {
-  std::vector<Grain> grains;
-  std::ifstream file(name);
-  for (Grain g;
-       file >> g.type >> g.x.x >> g.x.y >> g.x.z >> g.v.x >> g.v.y >> g.v.z >> g.omega.x >> g.omega.y >> g.omega.z;) {
-    g.x = wrap({{0, 0, 0}, {length, width, 1}, {true, true, false}}, g.x);
-    grains.push_back(g);
-  }
-  return grains;
-}
-
-double cpu(int who) {
-  rusage use{};
-  getrusage(who, &use);
-  return static_cast<double>(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
-         1e-6 * static_cast<double>(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
-}
-
-struct Sums {
-  double kinetic = 0;
-  Vec3 centre;
-};
-
-Sums sums_of(const DemState& s) {
-  Sums sums;
-  for (std::int64_t i = 0; i < s.grains.flowing; ++i) {
-    sums.kinetic += 0.5 * norm2(full_step_velocity(s, i));
-    sums.centre += s.grains.x[static_cast<std::size_t>(i)] / static_cast<double>(s.grains.flowing);
-  }
-  return sums;
-}
-
-struct LammpsRun {
-  double seconds = 0;
-  Sums sums;
-};
-
-// Style 0: granular, 1: gran/hooke/history. Nothing if it could not be run.
-bool run_lammps(const DemState& s, int style, double skin, int steps, LammpsRun& out) {
-  const std::string name = "bench-lammps";
-  {
-    std::ofstream data(name + ".data");
-    data << fmt::format(
-        "chute\n\n{} atoms\n2 atom types\n0 {} xlo xhi\n0 {} ylo yhi\n-4 80 zlo zhi\n\nAtoms # sphere\n\n",
-        s.grains.size(), s.box.length.x, s.box.length.y);
-    const auto grains = grains_of(s);
-    for (std::size_t i = 0; i < grains.size(); ++i)
-      data << fmt::format("{} {} 1 {} {} {} {}\n", i + 1, grains[i].type, 6 / std::numbers::pi, grains[i].x.x,
-                          grains[i].x.y, grains[i].x.z);
-    data << "\nVelocities\n\n";
-    for (std::size_t i = 0; i < grains.size(); ++i) {
-      const Grain& g = grains[i];
-      data << fmt::format("{} {} {} {} {} {} {}\n", i + 1, g.v.x, g.v.y, g.v.z, g.omega.x, g.omega.y, g.omega.z);
-    }
-    const double kt = 2 * kn / 7;
-    const std::string pair =
-        style == 0
-            ? fmt::format("granular\npair_coeff * * hooke {} {} tangential linear_history {} 1 0.5 damping velocity",
-                          kn, gamma_n, kt)
-            : fmt::format("gran/hooke/history {} {} {} {} 0.5 1\npair_coeff * *", kn, kt, 2 * gamma_n, 2 * gamma_n);
-    std::ofstream(name + ".in") << fmt::format(
-        "units lj\natom_style sphere\nboundary p p f\nnewton off\ncomm_modify vel yes\nread_data {0}.data\npair_style "
-        "{1}\nneighbor {2} bin\n"
-        "neigh_modify delay 0 every 1 check yes\ngroup flow type 1\nneigh_modify exclude type 2 2\nfix g flow gravity "
-        "1 chute 24\n"
-        "fix i flow nve/sphere\ntimestep 1e-4\ncompute k flow ke\nvariable x equal xcm(flow,x)\nvariable y equal "
-        "xcm(flow,y)\nvariable z equal xcm(flow,z)\n"
-        "thermo_style custom step c_k v_x v_y v_z\nthermo_modify norm no format float %.15g\nthermo {3}\nrun {3}\n",
-        name, pair, skin, steps);
-  }
-  const double before = cpu(RUSAGE_CHILDREN);
-  if (std::system(
-          ("OMP_NUM_THREADS=1 lmp -in " + name + ".in -log " + name + ".log > " + name + ".out 2>&1").c_str()) != 0)
-    return false;
-  out.seconds = cpu(RUSAGE_CHILDREN) - before;
-  std::ifstream log(name + ".log");
-  for (std::string line; std::getline(log, line);) {
-    std::istringstream words(line);
-    long step = -1;
-    if (words >> step && step == steps)
-      words >> out.sums.kinetic >> out.sums.centre.x >> out.sums.centre.y >> out.sums.centre.z;
-  }
-  return true;
-}
-
-// Grain-steps per second of `lmp`; set-up is taken out by the difference of two lengths. 0 if it is not there.
-double lammps_speed(const DemState& s, int style, double skin, int steps) {
-  LammpsRun brief, full;
-  if (!run_lammps(s, style, skin, 1, brief) || !run_lammps(s, style, skin, steps + 1, full)) return 0;
-  return static_cast<double>(s.grains.flowing) * steps / (full.seconds - brief.seconds);
-}
-
-double own_speed(DemState& s, const ContactLaws& laws, int steps) {
-  const double before = cpu(RUSAGE_SELF);
-  advance(s, laws, steps);
-  return static_cast<double>(s.grains.flowing) * steps / (cpu(RUSAGE_SELF) - before);
-}
-
-// Kinetic energy and centre of mass 150 steps on, against ours: the laws differ by O(overlap).
-bool agrees(const DemState& start, const ContactLaws& laws, int style) {
-  DemState s = start;
-  LammpsRun run;
-  if (!run_lammps(s, style, 0.15, 150, run)) return false;
-  prepare(s, laws);
-  advance(s, laws, 150);
-  const Sums own = sums_of(s);
-  const double energy = std::abs(run.sums.kinetic / own.kinetic - 1);
-  fmt::print("  style {}: kinetic energy {:.6g} against {:.6g} after 150 steps, relative difference {:.1e}\n", style,
-             own.kinetic, run.sums.kinetic, energy);
-  return energy < 1e-4 && std::abs(own.centre.z - run.sums.centre.z) < 1e-4;
+// Cycles of the time-stamp counter (constant rate, the nominal frequency of the processor) in a second.
+double cycles_per_second() {
+  const double begin = wall();
+  const std::uint64_t first = __rdtsc();
+  while (wall() - begin < 0.05) continue;
+  return static_cast<double>(__rdtsc() - first) / (wall() - begin);
 }
 
 std::string host() {
@@ -220,52 +41,176 @@ std::string host() {
   return name.data();
 }
 
+struct Row {
+  std::string flow;
+  double grains = 0, contacts = 0;                                // touching pairs per flowing grain
+  double fast = 0, plain = 0, granular = 0, hooke = 0, skin = 0;  // grain-steps per CPU second; LAMMPS' best skin
+  double steps_per_rebuild = 0, rebuild_part = 0;
+};
+
+// A state on its way: springs are there, lists are in use.
+DemState warmed(const DemState& start, const ContactLaws& laws) {
+  DemState s = start;
+  prepare(s, laws);
+  advance(s, laws, 100);
+  return s;
+}
+
+void count_contacts(Row& row, const DemState& s) {
+  row.grains = static_cast<double>(s.grains.flowing);
+  row.contacts = static_cast<double>(std::count(s.pairs.touching.begin(), s.pairs.touching.end(), 1)) / row.grains;
+}
+
+// One round of the fast engine from the start of the flow.
+void run_fast(Row& row, const DemState& start, const ContactLaws& laws, int steps) {
+  DemState s = warmed(start, laws);
+  const std::int64_t rebuilds = s.rebuilds;
+  const double begin = cpu(RUSAGE_SELF);
+  advance(s, laws, steps);
+  const double seconds = cpu(RUSAGE_SELF) - begin;
+  const double speed = static_cast<double>(s.grains.flowing) * steps / seconds;
+  if (speed < row.fast) return;
+  count_contacts(row, s);
+  row.fast = speed;
+  const double made = static_cast<double>(s.rebuilds - rebuilds);
+  row.steps_per_rebuild = made > 0 ? steps / made : 0;
+  const double rebuild = cpu(RUSAGE_SELF);
+  s.engine = {};
+  s.pairs.origin.clear();
+  advance(s, laws, 0);  // makes all lists
+  row.rebuild_part = made * (cpu(RUSAGE_SELF) - rebuild) / seconds;
+}
+
+void run_plain(Row& row, const DemState& start, const ContactLaws& laws, int steps) {
+  DemState s = start;
+  prepare(s, laws);
+  advance_plain(s, laws, 20);
+  const double begin = cpu(RUSAGE_SELF);
+  advance_plain(s, laws, steps);
+  row.plain = static_cast<double>(s.grains.flowing) * steps / (cpu(RUSAGE_SELF) - begin);
+}
+
+// Best of rounds in turn: other load only slows.
+Row compare(const std::string& name, const DemState& start, const ContactLaws& laws, int steps, bool lammps) {
+  Row row{.flow = name};
+  run_plain(row, start, laws, steps / 10);
+  if (lammps) row.granular = lammps_speed(start, Style::granular, 0.15, steps / 2);
+  for (const double skin : {0.1, 0.15, 0.2, 0.3}) {
+    run_fast(row, start, laws, steps);
+    const double speed = lammps ? lammps_speed(start, Style::hooke, skin, steps) : 0;
+    if (speed > row.hooke) row.hooke = speed, row.skin = skin;
+  }
+  for (int round = 0; round < 3; ++round) {
+    run_fast(row, start, laws, steps);
+    if (lammps) row.hooke = std::max(row.hooke, lammps_speed(start, Style::hooke, row.skin, steps));
+  }
+  return row;
+}
+
+void print(const Row& r, double hz) {
+  fmt::print(
+      "{:>10} {:7.0f} grains: fast {:6.1f} M grain-steps/s, plain {:5.1f}, lmp granular {:5.1f}, hooke {:5.1f} (skin "
+      "{}), fast/hooke {:4.2f};\n{:19} {:.2f} contacts per grain, {:.0f} cycles per contact and step, {:.0f} steps per "
+      "rebuild, rebuilds take {:.1f} %\n",
+      r.flow, r.grains, r.fast * 1e-6, r.plain * 1e-6, r.granular * 1e-6, r.hooke * 1e-6, r.skin,
+      r.hooke > 0 ? r.fast / r.hooke : 0.0, "", r.contacts, hz / r.fast / r.contacts, r.steps_per_rebuild,
+      100 * r.rebuild_part);
+}
+
+// Wall time of one thread over that of `count`, best of three by turns.
+double speed_up(const DemState& start, const ContactLaws& laws, int steps, int count) {
+  double one = 1e30, many = 1e30;
+  for (int round = 0; round < 3; ++round)
+    for (const int threads : {1, count}) {
+      set_threads(threads);
+      DemState s = warmed(start, laws);
+      const double begin = wall();
+      advance(s, laws, steps);
+      double& best = threads == 1 ? one : many;
+      best = std::min(best, wall() - begin);
+    }
+  set_threads(1);
+  return one / many;
+}
+
+// Peak memory of a process that runs the flow, in bytes. Forked before this process has grown or made threads.
+double peak_memory(const std::vector<Grain>& grains, const ContactLaws& laws, int nx, int ny) {
+  const pid_t child = fork();
+  if (child == 0) {
+    DemState s = make_state(grains, nx, ny);
+    prepare(s, laws);
+    advance(s, laws, 40);
+    _exit(0);
+  }
+  int status = 0;
+  rusage use{};
+  wait4(child, &status, 0, &use);
+  return 1024.0 * static_cast<double>(use.ru_maxrss);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  bool quick = false;
+  std::string given;
+  for (int k = 1; k < argc; ++k)
+    if (std::strcmp(argv[k], "--quick") == 0)
+      quick = true;
+    else
+      given = argv[k];
   set_threads(1);
-  const std::string cached = argc > 1 ? argv[1] : "bench-chute.state";
-  std::vector<Grain> grains = read(cached);
-  if (grains.empty()) {
-    fmt::print("developing the flow, once ...\n");
-    write(cached, develop());
-    grains = read(cached);
+  const ContactLaws linear = linear_laws(), hertz = hertz_laws();
+  const std::vector<Grain> developed = given.empty() ? developed_flow() : read(given);
+  if (developed.empty()) return fmt::print(stderr, "no grains in {}\n", given), 2;
+
+  const double larger = peak_memory(developed, linear, 8, 8), smaller = peak_memory(developed, linear, 4, 2);
+  const double flowing = static_cast<double>(make_state(developed, 1, 1).grains.flowing);
+  const double bytes = (larger - smaller) / (56 * flowing);
+
+  const bool lammps = lammps_is_there();
+  const DemState one = make_state(developed, 1, 1);
+  for (const Style style : {Style::granular, Style::hooke})
+    if (lammps && !lammps_agrees(one, linear, style)) return fmt::print(stderr, "LAMMPS runs another flow\n"), 1;
+
+  std::vector<Row> rows;
+  const double hz = cycles_per_second();
+  const auto add = [&](Row row) {
+    print(row, hz);
+    rows.push_back(std::move(row));
+  };
+  add(compare("developed", one, linear, 3000, lammps));
+  if (!quick) add(compare("steady", make_state(flow("steady", linear, 0, 300), 1, 1), linear, 3000, lammps));
+  add(compare("developed", make_state(developed, 4, 2), linear, 300, lammps));
+  add(compare("developed", make_state(developed, 8, 8), linear, 40, lammps));
+  const Row unequal = compare("unequal", make_state(flow("unequal", linear, 0.2, 20), 1, 1), linear, 3000, false);
+  const Row like = compare("hertz", make_state(flow("hertz", hertz, 0, 20), 1, 1), hertz, 3000, false);
+  add(unequal);
+  add(like);
+  const auto cost = [&](const Row& r) {
+    fmt::print(
+        "{:>10}: {:.2f} times the cost per grain-step of equal grains with the linear law, {:.2f} times per contact\n",
+        r.flow, rows[0].fast / r.fast, rows[0].fast * rows[0].contacts / (r.fast * r.contacts));
+  };
+  cost(unequal);
+  cost(like);
+
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  std::array<double, 2> faster{1, 1};
+  if (cores > 1) {
+    faster = {speed_up(one, linear, 3000, 2), speed_up(make_state(developed, 4, 2), linear, 500, 2)};
+    fmt::print("two threads: {:.2f} times as fast with 4 000 grains, {:.2f} times with 32 000\n", faster[0], faster[1]);
   }
-  const ContactLaws laws = chute_laws();
-  const bool lammps = std::system("command -v lmp > /dev/null") == 0;
+  fmt::print("memory: {:.0f} bytes per grain at the peak, contacts and lists included\n", bytes);
+
   std::ofstream csv("performance.csv", std::ios::app);
   if (csv.tellp() == 0)
-    csv << "host,commit,grains,grain_steps_per_s,plain,lammps_granular,lammps_hooke,ratio,contacts_per_grain,steps_per_"
-           "rebuild\n";
-
-  for (const auto& [nx, ny, steps] : {std::array{1, 1, 1000}, std::array{4, 2, 150}, std::array{8, 8, 30}}) {
-    const DemState start = make_state(grains, nx, ny);
-    if (nx == 1 && lammps)
-      for (const int style : {0, 1})
-        if (!agrees(start, laws, style)) return fmt::print(stderr, "LAMMPS runs another flow\n"), 1;
-    DemState s = start, plain = start;
-    prepare(s, laws);
-    advance(s, laws, 100);
-    prepare(plain, laws);
-    const std::int64_t step = s.step, rebuilds = s.rebuilds;
-    double own = 0, hooke = 0, granular = 0, slow = 0;
-    for (int round = 0; round < 3; ++round) {  // the best of each: other load only slows
-      own = std::max(own, own_speed(s, laws, steps));
-      if (lammps) hooke = std::max(hooke, lammps_speed(start, 1, 0.15, steps));
-      if (lammps && round == 0) granular = lammps_speed(start, 0, 0.15, steps);
-    }
-    const double before = cpu(RUSAGE_SELF);
-    advance_plain(plain, laws, steps / 10);
-    slow = static_cast<double>(plain.grains.flowing) * (steps / 10) / (cpu(RUSAGE_SELF) - before);
-    const double n = static_cast<double>(s.grains.flowing), touching = static_cast<double>(s.pairs.size()) / n;
-    const double per_rebuild =
-        static_cast<double>(s.step - step) / static_cast<double>(std::max<std::int64_t>(1, s.rebuilds - rebuilds));
-    fmt::print(
-        "{:7.0f} grains: {:6.1f} M grain-steps/s, plain {:5.1f}, lmp granular {:5.1f}, hooke {:5.1f}, ratio {:4.2f}; "
-        "{:.2f} contacts per grain, {:.0f} ns per contact, {:.0f} steps per rebuild\n",
-        n, own * 1e-6, slow * 1e-6, granular * 1e-6, hooke * 1e-6, hooke > 0 ? own / hooke : 0.0, touching,
-        1e9 / own / touching, per_rebuild);
-    csv << fmt::format("{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.3g},{:.3g},{:.0f}\n", host(), git_hash(), n, own, slow,
-                       granular, hooke, hooke > 0 ? own / hooke : 0.0, touching, per_rebuild);
-  }
+    csv << "host,commit,flow,grains,contacts_per_grain,fast_grain_steps_per_s,plain,lammps_granular,lammps_hooke,"
+           "lammps_skin,ratio,cycles_per_contact,steps_per_rebuild,rebuild_part,speed_up_2_threads_4k,"
+           "speed_up_2_threads_32k,bytes_per_grain\n";
+  for (const Row& r : rows)
+    csv << fmt::format(
+        "{},{},{},{},{:.3g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.4g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.0f}\n", host(),
+        git_hash(), r.flow, r.grains, r.contacts, r.fast, r.plain, r.granular, r.hooke, r.skin,
+        r.hooke > 0 ? r.fast / r.hooke : 0.0, hz / r.fast / r.contacts, r.steps_per_rebuild, r.rebuild_part, faster[0],
+        faster[1], bytes);
 }
