@@ -20,7 +20,8 @@ DemState developed(int nx, int ny) {
   return s;
 }
 
-void steps(benchmark::State& bench, void (*advance_by)(DemState&, const ContactLaws&, std::int64_t)) {
+template <class Advance>
+void steps(benchmark::State& bench, Advance&& advance_by) {
   DemState s = developed(static_cast<int>(bench.range(0)), static_cast<int>(bench.range(1)));
   const ContactLaws laws = bench::linear_laws();
   constexpr int chunk = 48;
@@ -31,8 +32,12 @@ void steps(benchmark::State& bench, void (*advance_by)(DemState&, const ContactL
   bench.counters["grain_steps/s"] = Counter(n * chunk, Counter::kIsIterationInvariantRate);
   bench.counters["contacts/grain"] = static_cast<double>(contacts(s, laws).size()) / n;
 }
-void fast_steps(benchmark::State& bench) { steps(bench, advance); }
-void plain_steps(benchmark::State& bench) { steps(bench, advance_plain); }
+void fast_steps(benchmark::State& bench) {
+  steps(bench, [](auto&&... a) { advance(a...); });
+}
+void plain_steps(benchmark::State& bench) {
+  steps(bench, [](auto&&... a) { advance_plain(a...); });
+}
 BENCHMARK(fast_steps)->Args({1, 1})->Args({2, 2})->Args({4, 2})->Args({8, 8})->Unit(benchmark::kMillisecond);
 BENCHMARK(plain_steps)->Args({1, 1})->Args({2, 2})->Args({4, 2})->Args({8, 8})->Unit(benchmark::kMillisecond);
 
@@ -73,8 +78,7 @@ void selection(benchmark::State& bench, bool inner) {
   double seen = 0;
   const auto from = [&](const fast::Section& section) {
     return inner ? section.mid.span()
-                 : fast::PairSpan{&engine.outer_i[section.outer_begin], &engine.outer_j[section.outer_begin], nullptr,
-                                  section.outer_count};
+                 : fast::PairSpan{section.outer_i.data(), section.outer_j.data(), nullptr, section.outer_count};
   };
   for (const fast::Section& section : engine.sections) seen += static_cast<double>(from(section).count);
   const double horizon = (inner ? fast::inner_steps : fast::mid_steps) * engine.dt;

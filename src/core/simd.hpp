@@ -90,6 +90,11 @@ struct Pack {
   Pack(double a) : v(Register{} + a) {}  // every lane
   explicit Pack(Register r) : v(r) {}
   static Pack load(const double* p) { return Pack(*reinterpret_cast<const Register*>(p)); }  // aligned to 64 bytes
+  static Pack load_unaligned(const double* p) {
+    Pack a;
+    std::memcpy(&a.v, p, sizeof a.v);
+    return a;
+  }
   void store(double* p) const { *reinterpret_cast<Register*>(p) = v; }
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = a; }

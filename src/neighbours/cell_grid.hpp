@@ -1,6 +1,7 @@
 // Points sorted into cells, and all pairs closer than a cell, each once, in an order that does not depend on threads.
 // Works for any box: with fewer than three cells in a periodic direction a pair appears once per image that is near.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -37,38 +38,67 @@ struct CellGrid {
 // Throws UnphysicalError when a periodic length is below `cutoff`.
 void sort_into_cells(CellGrid& grid, const Box& box, std::span<const Vec3> x, double cutoff);
 
-// f(i, j, image) for pairs whose first point lies in `slab`: every pair closer than the cutoff, and some others.
+// f(p, begin, end, image) for every place p in `order` of a point of `slab`: its near points are among those at the
+// places [begin, end), as that image. Each pair of near points is met once; several calls per p.
 template <class F>
-void for_each_pair(const CellGrid& grid, int slab, F&& f) {
+void for_each_range(const CellGrid& grid, int slab, F&& f) {
+  struct Range {
+    std::int32_t begin, end;
+    Image image;
+  };
   const auto [n0, n1, n2] = grid.count;
+  const auto begin_of = [&](int c0, int c1, int c2) {
+    return grid.cell_begin[static_cast<std::size_t>((c0 * n1 + c1) * n2 + c2)];
+  };
   // The neighbour cell along axis k, its image step; false outside a box that does not repeat.
   const auto step = [&](int k, int n, int& c, int& image) {
     image = c < 0 ? -1 : c >= n ? 1 : 0;
     c -= image * n;
     return image == 0 || grid.periodic[static_cast<std::size_t>(k)];
   };
-  const auto with_cell = [&](std::int32_t i, int c0, int c1, int c2) {
-    std::array<int, 3> along{}, image{};
-    if (!step(0, n0, c0, along[0]) || !step(1, n1, c1, along[1]) || !step(2, n2, c2, along[2])) return;
-    for (std::size_t k = 0; k < 3; ++k) image[static_cast<std::size_t>(grid.axis[k])] = along[k];
-    const auto code = image_code(image[0], image[1], image[2]);
-    const auto c = static_cast<std::size_t>((c0 * n1 + c1) * n2 + c2);
-    for (auto q = grid.cell_begin[c]; q < grid.cell_begin[c + 1]; ++q)
-      f(i, grid.order[static_cast<std::size_t>(q)], code);
-  };
-  const int first = grid.layer_begin(slab) * n1 * n2, last = grid.layer_begin(slab + 1) * n1 * n2;
-  for (int home = first; home < last; ++home) {
-    const int c0 = home / (n1 * n2), c1 = home / n2 % n1, c2 = home % n2;
-    const auto end = grid.cell_begin[static_cast<std::size_t>(home) + 1];
-    for (auto p = grid.cell_begin[static_cast<std::size_t>(home)]; p < end; ++p) {
-      const auto i = grid.order[static_cast<std::size_t>(p)];
-      for (auto q = p + 1; q < end; ++q) f(i, grid.order[static_cast<std::size_t>(q)], same_image);
-      with_cell(i, c0, c1, c2 + 1);
-      for (int o2 = -1; o2 <= 1; ++o2) with_cell(i, c0, c1 + 1, c2 + o2);
-      for (int o1 = -1; o1 <= 1; ++o1)
-        for (int o2 = -1; o2 <= 1; ++o2) with_cell(i, c0 + 1, c1 + o1, c2 + o2);
-    }
-  }
+  std::array<Range, 15> near;
+  for (int c0 = grid.layer_begin(slab); c0 < grid.layer_begin(slab + 1); ++c0)
+    for (int c1 = 0; c1 < n1; ++c1)
+      for (int c2 = 0; c2 < n2; ++c2) {
+        const std::int32_t first = begin_of(c0, c1, c2), last = begin_of(c0, c1, c2 + 1);
+        if (first == last) continue;
+        std::size_t ranges = 0;
+        // Cells c2 + from .. c2 + 1 of a row of cells lie side by side, but for a periodic image at either end.
+        const auto add_row = [&](int o0, int o1, int from) {
+          int a = c0 + o0, b = c1 + o1;
+          std::array<int, 3> image{};
+          auto &along0 = image[static_cast<std::size_t>(grid.axis[0])],
+               &along1 = image[static_cast<std::size_t>(grid.axis[1])],
+               &along2 = image[static_cast<std::size_t>(grid.axis[2])];
+          if (!step(0, n0, a, along0) || !step(1, n1, b, along1)) return;
+          const auto add = [&](int lo, int hi, int steps) {
+            along2 = steps;
+            if (lo <= hi)
+              near[ranges++] = {begin_of(a, b, lo), begin_of(a, b, hi + 1), image_code(image[0], image[1], image[2])};
+          };
+          if (grid.periodic[2] && c2 + from < 0) add(n2 - 1, n2 - 1, -1);
+          add(std::max(c2 + from, 0), std::min(c2 + 1, n2 - 1), 0);
+          if (grid.periodic[2] && c2 + 1 >= n2) add(0, 0, 1);
+        };
+        add_row(0, 0, 1);
+        const bool joined = ranges > 0 && near[0].begin == last && near[0].image == same_image;
+        add_row(0, 1, -1);
+        for (int o1 = -1; o1 <= 1; ++o1) add_row(1, o1, -1);
+        for (std::int32_t p = first; p < last; ++p) {
+          f(p, p + 1, joined ? near[0].end : last, same_image);
+          for (std::size_t k = joined ? 1 : 0; k < ranges; ++k)
+            if (near[k].begin < near[k].end) f(p, near[k].begin, near[k].end, near[k].image);
+        }
+      }
+}
+
+// f(i, j, image) for pairs whose first point lies in `slab`: every pair closer than the cutoff, and some others.
+template <class F>
+void for_each_pair(const CellGrid& grid, int slab, F&& f) {
+  for_each_range(grid, slab, [&](std::int32_t p, std::int32_t begin, std::int32_t end, Image image) {
+    const std::int32_t i = grid.order[static_cast<std::size_t>(p)];
+    for (std::int32_t q = begin; q < end; ++q) f(i, grid.order[static_cast<std::size_t>(q)], image);
+  });
 }
 
 }  // namespace bagnold::neighbours

@@ -85,8 +85,7 @@ void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
   const Offset pad_i = offset_of(pads), pad_j = offset_of(pads + 1);
   if (!section.mid_valid.holds()) {
     const double margin = margin_for(engine, a, mid_steps);
-    const PairSpan outer{&engine.outer_i[section.outer_begin], &engine.outer_j[section.outer_begin], nullptr,
-                         section.outer_count};
+    const PairSpan outer{section.outer_i.data(), section.outer_j.data(), nullptr, section.outer_count};
     select(engine.rows, engine.images, outer, mid_steps * engine.dt, margin, section.mid);
     section.mid.pad(8, pad_i, pad_j, 0);
     section.mid_valid.renew(mid_steps, margin);

@@ -28,7 +28,8 @@ struct Slab {
 };
 
 struct Section {
-  std::size_t outer_begin = 0, outer_count = 0;
+  Aligned<Offset> outer_i, outer_j;  // all pairs within the skin, readable to the next multiple of eight
+  std::size_t outer_count = 0;
   Selection mid, inner;
   Aligned<std::uint32_t> kind;  // of the inner list
   Aligned<double> history;      // of the inner list, and a group of zeros behind
@@ -65,7 +66,6 @@ struct Engine {
   std::int64_t built_at = 0;          // step
   std::vector<Slab> slabs;
   std::vector<Section> sections;
-  Aligned<Offset> outer_i, outer_j;
   std::vector<Scratch> scratch;  // by thread
 };
 
@@ -95,6 +95,9 @@ void store(const Engine& engine, DemState& state);
 
 // As dem::advance, for a state it supports.
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
+
+// Makes the outer lists from the places where grains start. `grid`: its layers are the slabs.
+void list_outer(Engine& engine, const Grains& grains, const neighbours::CellGrid& grid, const std::vector<Vec3>& start);
 
 // Makes the lists of a section that no longer hold anew, at the present positions.
 void refresh(Engine& engine, std::size_t section, Scratch& scratch);

@@ -116,40 +116,6 @@ void fill_rows(Engine& engine, const Grains& g) {
     }
 }
 
-void list_outer(Engine& engine, const Grains& g, const neighbours::CellGrid& grid, const std::vector<Vec3>& start) {
-  const auto shift = neighbours::image_shifts(engine.box);
-  std::vector<std::vector<Offset>> pairs(engine.slabs.size());
-  parallel_for(static_cast<std::int64_t>(pairs.size()), [&](std::int64_t s) {
-    auto& out = pairs[at(s)];
-    neighbours::for_each_pair(grid, static_cast<int>(s), [&](std::int32_t a, std::int32_t b, neighbours::Image image) {
-      if (a >= g.flowing && b >= g.flowing) return;
-      const double reach = 0.5 * (g.diameter[at(a)] + g.diameter[at(b)]) + engine.skin;
-      if (norm2(start[at(a)] - start[at(b)] - shift[image]) >= reach * reach) return;
-      out.push_back(offset_of(engine.row[at(a)]));
-      out.push_back(offset_of(engine.row[at(b)]));
-    });
-  });
-  std::size_t total = 0;
-  engine.sections.resize(pairs.size());
-  for (std::size_t s = 0; s < pairs.size(); ++s) {
-    engine.sections[s].outer_begin = total;
-    engine.sections[s].outer_count = pairs[s].size() / 2;
-    total += pairs[s].size() / 2;
-  }
-  engine.outer_i.resize(total + 8);
-  engine.outer_j.resize(total + 8);
-  const std::size_t pads = engine.slabs[0].end;
-  std::fill(engine.outer_i.begin() + static_cast<std::ptrdiff_t>(total), engine.outer_i.end(), offset_of(pads));
-  std::fill(engine.outer_j.begin() + static_cast<std::ptrdiff_t>(total), engine.outer_j.end(), offset_of(pads + 1));
-  parallel_for(static_cast<std::int64_t>(pairs.size()), [&](std::int64_t s) {
-    const std::size_t first = engine.sections[at(s)].outer_begin;
-    for (std::size_t k = 0; k < pairs[at(s)].size() / 2; ++k) {
-      engine.outer_i[first + k] = pairs[at(s)][2 * k];
-      engine.outer_j[first + k] = pairs[at(s)][2 * k + 1];
-    }
-  });
-}
-
 // First inner lists, and the springs of the pairs that touch.
 void list_inner(Engine& engine, const PairList& remembered) {
   std::vector<std::uint32_t> begin(engine.grain.size() + 1, 0);
