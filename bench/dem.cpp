@@ -100,8 +100,7 @@ void all_lists(benchmark::State& bench) {
   DemState s = developed(1, 1);
   fast::Engine engine = loaded(s);
   for (auto _ : bench) {
-    fast::store(engine, s);
-    s.pairs.origin.clear();
+    fast::unload(engine, s);
     fast::load(engine, s, bench::linear_laws());
   }
   bench.counters["grains/s"] = Counter(static_cast<double>(s.grains.flowing), Counter::kIsIterationInvariantRate);

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "chute_flow.hpp"
+#include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "lammps.hpp"
@@ -159,13 +160,15 @@ int main(int argc, char** argv) {
     else
       given = argv[k];
   set_threads(1);
+  return_large_arrays();
   const ContactLaws linear = linear_laws(), hertz = hertz_laws();
   const std::vector<Grain> developed = given.empty() ? developed_flow() : read(given);
   if (developed.empty()) return fmt::print(stderr, "no grains in {}\n", given), 2;
 
   const double larger = peak_memory(developed, linear, 8, 8), smaller = peak_memory(developed, linear, 4, 2);
-  const double flowing = static_cast<double>(make_state(developed, 1, 1).grains.flowing);
-  const double bytes = (larger - smaller) / (56 * flowing);
+  const double bytes = (larger - smaller) / (56 * static_cast<double>(developed.size()));
+
+  fmt::print("memory: {:.0f} bytes per grain (base included) at the peak, contacts and lists included\n", bytes);
 
   const bool lammps = lammps_is_there();
   const DemState one = make_state(developed, 1, 1);
@@ -200,7 +203,6 @@ int main(int argc, char** argv) {
     faster = {speed_up(one, linear, 3000, 2), speed_up(make_state(developed, 4, 2), linear, 500, 2)};
     fmt::print("two threads: {:.2f} times as fast with 4 000 grains, {:.2f} times with 32 000\n", faster[0], faster[1]);
   }
-  fmt::print("memory: {:.0f} bytes per grain at the peak, contacts and lists included\n", bytes);
 
   std::ofstream csv("performance.csv", std::ios::app);
   if (csv.tellp() == 0)

@@ -70,6 +70,7 @@ void prepare(DemState& state, const ContactLaws& laws) {
   state.ledger = {};
   state.step = state.rebuilds = state.next_reorder = 0;
   if (state.skin <= 0) state.skin = default_skin(state.grains);
+  if (fast::supports(state)) return fast::prepare(state, laws);
   rebuild_pairs(state);
   evaluate_forces(state, laws, 0);
   if (state.keep_ledger) balance_ledger(state, laws);

@@ -23,7 +23,7 @@ struct Grains {
   std::vector<std::int32_t> species;  // index into the contact model's species
   std::vector<std::int64_t> id;       // survives reordering; stable name of the grain in every output
   std::int64_t flowing = 0;
-  std::int64_t size() const { return static_cast<std::int64_t>(x.size()); }
+  std::int64_t size() const { return static_cast<std::int64_t>(diameter.size()); }
 };
 
 // An infinite frictional plane through `point`; grains are on the side `normal` points to (unit vector).

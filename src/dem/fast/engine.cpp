@@ -108,9 +108,30 @@ void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
 
 namespace {
 
+// f.operator()<K>(tables) with the kernel K for the laws and sizes at hand.
+template <class F>
+void with_kernel(const Engine& engine, F&& f) {
+  with_laws(engine.laws, [&](const auto& tables) {
+    using T = std::decay_t<decltype(tables)>;
+    if (!engine.one_kind) return f.template operator()<Kernel<T, false, false>>(tables);
+    if (!engine.equal_radii) return f.template operator()<Kernel<T, false, true>>(tables);
+    return f.template operator()<Kernel<T, true, true>>(tables);
+  });
+}
+
+// Adds the forces of section a.
+template <class K, class Tables>
+void act(Engine& engine, const Tables& tables, std::size_t a, Scratch& scratch) {
+  Section& section = engine.sections[a];
+  const KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
+  const Batches pairs{section.inner.i.data(), section.inner.j.data(), section.kind.data(), section.history.data(),
+                      section.inner.count};
+  scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input));
+}
+
+// Steps [from, to) of an epoch.
 template <class K, class Tables>
 void pass(Engine& engine, const Tables& tables, int from, int to) {
-  const KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
   const auto move = [&](int s, int t) {
     Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
     const double kick = engine.step + t - from == 0 ? 0.5 * engine.dt : engine.dt;  // the first step closes no other
@@ -118,28 +139,20 @@ void pass(Engine& engine, const Tables& tables, int from, int to) {
     slab.drift.step(engine.dt, slab.acceleration);
     --slab.steps_left;
   };
-  const auto act = [&](int s, int) {
+  const auto forces = [&](int s, int) {
     const auto a = static_cast<std::size_t>(s), b = static_cast<std::size_t>(engine.ring.wrap(s + 1));
     Section& section = engine.sections[a];
     Scratch& scratch = engine.scratch[static_cast<std::size_t>(omp_get_thread_num())];
     section.mid_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
     section.inner_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
     if (!section.mid_valid.holds() || !section.inner_valid.holds()) refresh(engine, a, scratch);
-    const Batches pairs{section.inner.i.data(), section.inner.j.data(), section.kind.data(), section.history.data(),
-                        section.inner.count};
-    scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input));
+    act<K>(engine, tables, a, scratch);
   };
-  sweep(engine.ring, from, to, engine.grain.size() >= 500, move, act);
+  sweep(engine.ring, from, to, engine.grain.size() >= 500, move, forces);
 }
 
-// Steps [from, to) of an epoch with the kernel for the laws and sizes at hand.
 void pass(Engine& engine, int from, int to) {
-  with_laws(engine.laws, [&](const auto& tables) {
-    using T = std::decay_t<decltype(tables)>;
-    if (!engine.one_kind) return pass<Kernel<T, false, false>>(engine, tables, from, to);
-    if (!engine.equal_radii) return pass<Kernel<T, false, true>>(engine, tables, from, to);
-    return pass<Kernel<T, true, true>>(engine, tables, from, to);
-  });
+  with_kernel(engine, [&]<class K>(const auto& tables) { pass<K>(engine, tables, from, to); });
 }
 
 // Whether the outer list is sure to hold for the next epoch.
@@ -182,7 +195,7 @@ namespace {
 void check(Engine& engine, DemState& state) {
   for (const Slab& slab : engine.slabs)
     if (!(slab.excursion + slab.drift.distance <= 0.5 * engine.skin)) {
-      store(engine, state);
+      leave(engine, state);
       check_motion(state);
       throw NumericalError(
           fmt::format("step {} (t = {:g}): a grain was thrown {:g} out of its path within {} steps; the step is too "
@@ -192,29 +205,20 @@ void check(Engine& engine, DemState& state) {
   double excess = 0;
   for (const Scratch& scratch : engine.scratch) excess = std::max(excess, scratch.excess);
   if (excess > 0) {
-    store(engine, state);
+    leave(engine, state);
     report_overlap(state);
   }
 }
 
 void rebuild(Engine& engine, DemState& state) {
-  store(engine, state);
-  state.pairs.origin.clear();
+  unload(engine, state);
   ++state.rebuilds;
   load(engine, state, ContactLaws(engine.laws));
 }
 
-}  // namespace
-
-void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
-  if (!state.engine.held || !matches(*std::static_pointer_cast<Engine>(state.engine.held), state, laws)) {
-    auto fresh = std::make_shared<Engine>();
-    load(*fresh, state, laws);
-    state.engine.held = std::move(fresh);
-  }
-  Engine& engine = *std::static_pointer_cast<Engine>(state.engine.held);
+void take_steps(Engine& engine, DemState& state, std::int64_t steps, const Watch& watch) {
   engine.scratch.resize(std::max(engine.scratch.size(), static_cast<std::size_t>(threads())));
-  for (const std::int64_t end = state.step + steps; engine.step < end;) {
+  for (const std::int64_t end = engine.step + steps; engine.step < end;) {
     int level = static_cast<int>(engine.step % engine.ring.levels);
     if (level == 0 && !audit(engine)) {
       rebuild(engine, state);
@@ -227,7 +231,40 @@ void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const
     check(engine, state);
     if (watch.sees(engine.step)) watch.fast(engine, state);
   }
-  store(engine, state);
+}
+
+// With a new engine if the state has none; whatever happens the state has its grains back.
+template <class Work>
+void with_engine(DemState& state, const ContactLaws& laws, Work&& work) {
+  if (!state.engine.held) state.engine.held = std::make_shared<Engine>();
+  Engine& engine = *std::static_pointer_cast<Engine>(state.engine.held);
+  try {
+    enter(engine, state, laws);
+    work(engine);
+  } catch (...) {
+    leave(engine, state);
+    throw;
+  }
+  leave(engine, state);
+}
+
+}  // namespace
+
+void prepare(DemState& state, const ContactLaws& laws) {
+  state.engine = {};
+  with_engine(state, laws, [&](Engine& engine) {
+    engine.dt = 0;  // springs stay 0
+    with_kernel(engine, [&]<class K>(const auto& tables) {
+      for (std::size_t a = 0; a < engine.sections.size(); ++a) act<K>(engine, tables, a, engine.scratch[0]);
+    });
+    engine.dt = state.dt;
+    state.rebuilds = 1;
+    check(engine, state);
+  });
+}
+
+void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
+  with_engine(state, laws, [&](Engine& engine) { take_steps(engine, state, steps, watch); });
 }
 
 }  // namespace bagnold::dem::fast

@@ -59,11 +59,12 @@ struct Engine {
   Ring ring;
   Rows rows;
   std::vector<std::int32_t> grain;    // of each row; -1: none
-  std::vector<std::int32_t> species;  // of each row
-  std::vector<std::size_t> row;       // of each grain
+  std::vector<std::int32_t> species;  // of each row, if there are several
+  std::vector<std::uint32_t> row;     // of each grain
   std::vector<Vec3> start;            // of each row: where it was when the outer list was made
   Vec3 frame;                         // velocity relative to which excursions are measured
   std::int64_t built_at = 0;          // step
+  std::uint64_t left_behind = 0;      // fingerprint of the grains when the engine gave them back
   std::vector<Slab> slabs;
   std::vector<Section> sections;
   std::vector<Scratch> scratch;  // by thread
@@ -84,14 +85,20 @@ inline constexpr bool available = false;
 // only a few grains wide.
 bool supports(const DemState& state);
 
-// Whether `engine` still is the state it left behind.
-bool matches(const Engine& engine, const DemState& state, const ContactLaws& laws);
+// While the engine is at work it holds the grains and their contacts: the arrays x, v, omega, force, torque and `pairs`
+// of the state are empty. enter() takes them, and keeps its lists if the state is the one it left behind; leave() gives
+// them back (nothing if it does not have them).
+void enter(Engine& engine, DemState& state, const ContactLaws& laws);
+void leave(Engine& engine, DemState& state);
 
-// A new engine for the state. Continues from the lists the state remembers if another engine made them.
+// Takes the state and makes all lists, those that the state remembers if another engine made them before.
 void load(Engine& engine, DemState& state, const ContactLaws& laws);
 
-// Writes grains, touching pairs and the origin of the lists into the state.
-void store(const Engine& engine, DemState& state);
+// Gives the state back but for the origin of the lists: the next load() starts new ones.
+void unload(Engine& engine, DemState& state);
+
+// As dem::prepare: the forces at t = 0.
+void prepare(DemState& state, const ContactLaws& laws);
 
 // As dem::advance, for a state it supports.
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});

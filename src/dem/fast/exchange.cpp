@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -34,34 +35,40 @@ void choose_kernel(Engine& engine, const Grains& g) {
     engine.one_kind = engine.one_kind && engine.constants[k] == engine.constants[k % engine.constant_numbers];
 }
 
-// Where the outer list starts: now, unless the state remembers.
-void set_start(Engine& engine, DemState& state, std::vector<Vec3>& start) {
+template <class T>
+void release(std::vector<T>& values) {
+  std::vector<T>().swap(values);
+}
+
+// Starts the outer list here and now.
+void start_lists(Engine& engine, DemState& state) {
   Grains& g = state.grains;
-  if (state.pairs.origin.empty()) {
-    check_motion(state);
-    wrap_positions(state);
-    engine.built_at = state.step;
-    Vec3 lo, hi;  // fixed grains are at rest
-    if (g.flowing == g.size()) lo = hi = g.v[0];
-    for (std::size_t i = 0; i < at(g.flowing); ++i)
-      for (int k = 0; k < 3; ++k) {
-        lo[k] = std::min(lo[k], g.v[i][k]);
-        hi[k] = std::max(hi[k], g.v[i][k]);
-      }
-    engine.frame = 0.5 * (lo + hi);
-    state.pairs.reference.assign(g.x.begin(), g.x.begin() + g.flowing);
-  } else {
-    engine.built_at = static_cast<std::int64_t>(state.pairs.origin[0]);
-    engine.frame = {state.pairs.origin[1], state.pairs.origin[2], state.pairs.origin[3]};
-  }
-  start = g.x;
+  check_motion(state);
+  wrap_positions(state);
+  engine.built_at = state.step;
+  Vec3 lo, hi;  // fixed grains are at rest
+  if (g.flowing == g.size()) lo = hi = g.v[0];
+  for (std::size_t i = 0; i < at(g.flowing); ++i)
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], g.v[i][k]);
+      hi[k] = std::max(hi[k], g.v[i][k]);
+    }
+  engine.frame = 0.5 * (lo + hi);
+}
+
+// Where grains were when the lists that the state remembers were made.
+std::vector<Vec3> remembered_start(Engine& engine, const DemState& state) {
+  engine.built_at = static_cast<std::int64_t>(state.pairs.origin[0]);
+  engine.frame = {state.pairs.origin[1], state.pairs.origin[2], state.pairs.origin[3]};
+  std::vector<Vec3> start = state.grains.x;
   std::copy(state.pairs.reference.begin(), state.pairs.reference.end(), start.begin());
+  return start;
 }
 
 void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& grid, const std::vector<Vec3>& start) {
   const std::size_t rows = start.size() + 2 * static_cast<std::size_t>(grid.slabs);
   engine.grain.assign(rows, -1);
-  engine.species.assign(rows, 0);
+  engine.species.assign(engine.one_kind ? 0 : rows, 0);
   engine.row.resize(start.size());
   engine.start.assign(rows, Vec3{});
   engine.slabs.assign(static_cast<std::size_t>(grid.slabs), {});
@@ -75,9 +82,9 @@ void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
         const auto i = at(grid.order[q]);
         if ((static_cast<std::int64_t>(i) < g.flowing) != flowing) continue;
         engine.grain[row] = static_cast<std::int32_t>(i);
-        engine.species[row] = g.species[i];
+        if (!engine.one_kind) engine.species[row] = g.species[i];
         engine.start[row] = start[i];
-        engine.row[i] = row++;
+        engine.row[i] = static_cast<std::uint32_t>(row++);
       }
       if (flowing) slab.moving_end = row;
     }
@@ -86,34 +93,155 @@ void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
   }
 }
 
-void fill_rows(Engine& engine, const Grains& g) {
+// The rows of the grains from the arrays of the state, which are given up one after the other: large flows are in
+// memory once.
+void take_grains(Engine& engine, Grains& g) {
   Rows& rows = engine.rows;
-  rows.resize(engine.grain.size());
-  for (std::size_t k = 0; k < engine.grain.size(); ++k) {
-    double *x = &rows.position[position_doubles * k], *v = &rows.velocity[velocity_doubles * k],
-           *f = &rows.force[force_doubles * k];
-    if (engine.grain[k] < 0) {  // radius 0, and its companion a little away
-      x[0] = engine.grain[k - 1] < 0 ? 0.0 : 0.3 * g.diameter[0];
-      continue;
+  const std::size_t count = engine.grain.size();
+  const auto fill = [&](Aligned<double>& to, std::size_t doubles, auto&& row_of_grain) {
+    to.resize(count * doubles);
+    parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t n) {
+      double* row = &to[at(n) * doubles];
+      std::fill_n(row, doubles, 0.0);
+      if (engine.grain[at(n)] >= 0) row_of_grain(row, at(engine.grain[at(n)]));
+    });
+  };
+  const auto put = [](double* row, const Vec3& a, double fourth) {
+    row[0] = a.x, row[1] = a.y, row[2] = a.z, row[3] = fourth;
+  };
+  const auto flows = [&](std::size_t i) { return static_cast<std::int64_t>(i) < g.flowing; };
+  const auto inverse_mass = [&](std::size_t i) { return flows(i) ? 1 / g.mass[i] : 0; };
+  fill(rows.force, force_doubles, [&](double* row, std::size_t i) {
+    put(row, flows(i) ? g.force[i] : Vec3{}, inverse_mass(i));
+    put(row + 4, flows(i) ? g.torque[i] : Vec3{}, flows(i) ? 1 / g.inertia[i] : 0);
+  });
+  release(g.force);
+  release(g.torque);
+  fill(rows.velocity, velocity_doubles, [&](double* row, std::size_t i) {
+    put(row, g.v[i], 0.5 * g.diameter[i]);
+    put(row + 4, g.omega[i], inverse_mass(i));
+  });
+  release(g.v);
+  release(g.omega);
+  fill(rows.position, position_doubles, [&](double* row, std::size_t i) { put(row, g.x[i], 0.5 * g.diameter[i]); });
+  release(g.x);
+  for (const Slab& slab : engine.slabs)  // the two that never touch: radius 0, a little apart
+    rows.position[position_doubles * (slab.end + 1)] = 0.3 * g.diameter[0];
+}
+
+// The touching pairs with their springs.
+void give_pairs(const Engine& engine, PairList& pairs) {
+  pairs = {};
+  std::size_t listed = 0;
+  for (const Section& section : engine.sections) listed += section.inner.count;
+  for (auto* numbers : {&pairs.i, &pairs.j}) numbers->reserve(listed);
+  for (auto* vectors : {&pairs.spring, &pairs.roll}) vectors->reserve(listed);
+  pairs.image.reserve(listed);
+  for (const Section& section : engine.sections)
+    for (std::size_t k = 0; k < section.inner.count; ++k) {
+      const auto a = row_of(section.inner.i[k]), b = row_of(section.inner.j[k]);
+      const double *xa = &engine.rows.position[position_doubles * a], *xb = &engine.rows.position[position_doubles * b];
+      Vec3 r{xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2]};
+      std::array<int, 3> image{};
+      for (int d = 0; d < 3; ++d) {
+        image[at(d)] = static_cast<int>(std::nearbyint(engine.images.inverse[d] * r[d]));
+        r[d] -= engine.images.length[d] * image[at(d)];
+      }
+      const double* h = &section.history[k / 8 * 8 * engine.history_numbers + k % 8];
+      Vec3 spring{h[0], h[8], h[16]}, roll{};
+      if (engine.history_numbers > 3) roll = {h[24], h[32], h[40]};
+      const double reach = xa[3] + xb[3];  // the kernel may have rounded a grazing contact the other way
+      if (norm2(r) >= reach * reach && spring == Vec3{} && roll == Vec3{}) continue;
+      std::int32_t i = engine.grain[a], j = engine.grain[b];
+      auto code = neighbours::image_code(image[0], image[1], image[2]);
+      if (i > j) {
+        std::swap(i, j);
+        code = neighbours::opposite(code);
+        spring = -spring;
+        roll = -roll;
+      }
+      pairs.i.push_back(i);
+      pairs.j.push_back(j);
+      pairs.image.push_back(code);
+      pairs.spring.push_back(spring);
+      pairs.roll.push_back(roll);
     }
-    const auto i = at(engine.grain[k]);
-    const bool flows = engine.grain[k] < g.flowing;
-    const double radius = 0.5 * g.diameter[i], mass = flows ? 1 / g.mass[i] : 0, inertia = flows ? 1 / g.inertia[i] : 0;
-    const std::array<double, 4> position{g.x[i].x, g.x[i].y, g.x[i].z, radius};
-    const std::array<double, 8> velocity{g.v[i].x,     g.v[i].y,     g.v[i].z,     radius,
-                                         g.omega[i].x, g.omega[i].y, g.omega[i].z, mass};
-    const std::array<double, 8> force{g.force[i].x,  g.force[i].y,  g.force[i].z,  mass,
-                                      g.torque[i].x, g.torque[i].y, g.torque[i].z, inertia};
-    std::copy(position.begin(), position.end(), x);
-    std::copy(velocity.begin(), velocity.end(), v);
-    std::copy(force.begin(), force.end(), f);
-    if (!flows) std::fill_n(f, 3, 0.0), std::fill_n(f + 4, 3, 0.0);
+  pairs.touching.assign(pairs.i.size(), 1);
+  pairs.slab_begin = {0, static_cast<std::int64_t>(pairs.i.size())};
+}
+
+// The way back, again one array after the other; `pairs` are found from the positions.
+void give_all(Engine& engine, DemState& state) {
+  Grains& g = state.grains;
+  Rows& rows = engine.rows;
+  const std::size_t count = at(g.size());
+  const auto fill = [&](std::vector<Vec3>& to, const Aligned<double>& from, std::size_t doubles, std::size_t first,
+                        std::int64_t n) {
+    to.resize(count);
+    parallel_for(n, [&](std::int64_t i) {
+      const double* row = &from[engine.row[at(i)] * doubles + first];
+      to[at(i)] = {row[0], row[1], row[2]};
+    });
+  };
+  state.step = engine.step;
+  fill(g.force, rows.force, force_doubles, 0, g.flowing);  // 0 on fixed grains
+  fill(g.torque, rows.force, force_doubles, 4, g.flowing);
+  Aligned<double>().swap(rows.force);
+  fill(g.v, rows.velocity, velocity_doubles, 0, g.size());
+  fill(g.omega, rows.velocity, velocity_doubles, 4, g.size());
+  Aligned<double>().swap(rows.velocity);
+  give_pairs(engine, state.pairs);
+  fill(g.x, rows.position, position_doubles, 0, g.size());
+  Aligned<double>().swap(rows.position);
+}
+
+// When and where the lists were made, and what is known of the excursions since.
+void give_origin(const Engine& engine, DemState& state) {
+  PairList& pairs = state.pairs;
+  pairs.reference.resize(at(state.grains.flowing));
+  parallel_for(state.grains.flowing, [&](std::int64_t i) { pairs.reference[at(i)] = engine.start[engine.row[at(i)]]; });
+  pairs.origin = {static_cast<double>(engine.built_at), engine.frame.x, engine.frame.y, engine.frame.z};
+  for (const Slab& slab : engine.slabs)
+    for (const double number : {slab.excursion, slab.drift.speed, slab.drift.distance, slab.acceleration,
+                                static_cast<double>(slab.steps_left)})
+      pairs.origin.push_back(number);
+}
+
+void remember_origin(Engine& engine, const PairList& pairs) {
+  for (std::size_t s = 0; s < engine.slabs.size(); ++s) {
+    const double* known = &pairs.origin[4 + 5 * s];
+    engine.slabs[s].excursion = known[0];
+    engine.slabs[s].drift = {known[1], known[2]};
+    engine.slabs[s].acceleration = known[3];
+    engine.slabs[s].steps_left = static_cast<std::int64_t>(known[4]);
   }
+}
+
+void measure_accelerations(Engine& engine) {
   for (Slab& slab : engine.slabs)
     for (std::size_t k = slab.begin; k < slab.moving_end; ++k) {
-      const double* f = &rows.force[force_doubles * k];
+      const double* f = &engine.rows.force[force_doubles * k];
       slab.acceleration = std::max(slab.acceleration, norm(f[3] * Vec3{f[0], f[1], f[2]} + engine.gravity));
     }
+}
+
+// A number that tells the grains of one moment from those of any other.
+std::uint64_t fingerprint(const Grains& g) {
+  std::array<std::uint64_t, 8> lanes{};
+  const auto add = [&](const void* data, std::size_t bytes) {
+    for (std::size_t b = 0; b < bytes; b += sizeof lanes) {
+      std::array<std::uint64_t, 8> words{};
+      std::memcpy(words.data(), static_cast<const char*>(data) + b, std::min(sizeof words, bytes - b));
+      for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k] = std::rotl(lanes[k] ^ words[k], 29) * 0x9e3779b97f4a7c15;
+    }
+  };
+  for (const auto* values : {&g.x, &g.v, &g.omega, &g.force, &g.torque})
+    add(values->data(), values->size() * sizeof(Vec3));
+  for (const auto* values : {&g.diameter, &g.mass, &g.inertia}) add(values->data(), values->size() * sizeof(double));
+  add(g.species.data(), g.species.size() * sizeof(std::int32_t));
+  std::uint64_t all = static_cast<std::uint64_t>(g.flowing);
+  for (const std::uint64_t lane : lanes) all = std::rotl(all ^ lane, 29) * 0x9e3779b97f4a7c15;
+  return all;
 }
 
 // First inner lists, and the springs of the pairs that touch.
@@ -162,10 +290,10 @@ bool supports(const DemState& state) {
   return true;
 }
 
-bool matches(const Engine& engine, const DemState& state, const ContactLaws& laws) {
-  const Grains& g = state.grains;
+bool continues(const Engine& engine, const DemState& state, const ContactLaws& laws) {
   if (engine.step != state.step || engine.dt != state.dt || engine.gravity != state.gravity ||
-      engine.overlap_ratio != state.max_overlap_ratio || engine.row.size() != g.x.size() || state.pairs.origin.empty())
+      engine.overlap_ratio != state.max_overlap_ratio || engine.row.size() != state.grains.x.size() ||
+      state.pairs.origin.empty())
     return false;
   for (int k = 0; k < 3; ++k)
     if (engine.box.length[k] != state.box.length[k] || engine.box.periodic[at(k)] != state.box.periodic[at(k)])
@@ -178,21 +306,11 @@ bool matches(const Engine& engine, const DemState& state, const ContactLaws& law
            laws.tangential.index() == engine.laws.tangential.index() &&
            laws.rolling.index() == engine.laws.rolling.index();
   });
-  if (!same_laws) return false;
-  for (std::size_t i = 0; i < at(g.flowing); ++i) {
-    const std::size_t k = engine.row[i];
-    const double *x = &engine.rows.position[position_doubles * k], *v = &engine.rows.velocity[velocity_doubles * k];
-    const double* f = &engine.rows.force[force_doubles * k];
-    const auto same = [](const Vec3& a, const double* b) { return a.x == b[0] && a.y == b[1] && a.z == b[2]; };
-    if (!same(g.x[i], x) || !same(g.v[i], v) || !same(g.omega[i], v + 4) || !same(g.force[i], f) ||
-        !same(g.torque[i], f + 4) || 0.5 * g.diameter[i] != x[3] || 1 / g.mass[i] != f[3] || 1 / g.inertia[i] != f[7])
-      return false;
-  }
-  return true;
+  return same_laws && engine.left_behind == fingerprint(state.grains);
 }
 
 void load(Engine& engine, DemState& state, const ContactLaws& laws) {
-  const Grains& g = state.grains;
+  Grains& g = state.grains;
   engine.laws = laws;
   engine.box = state.box;
   engine.gravity = state.gravity;
@@ -208,82 +326,48 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
     }
   choose_kernel(engine, g);
 
-  std::vector<Vec3> start;
-  set_start(engine, state, start);
-  neighbours::CellGrid grid;
-  neighbours::sort_into_cells(grid, engine.box, start, largest_diameter(g) + engine.skin);
-  grid.slabs = grid.count[0];
-  engine.ring = make_ring(grid.slabs, steps_per_pass);
-  place_rows(engine, g, grid, start);
-  fill_rows(engine, g);
-  list_outer(engine, g, grid, start);
+  const bool anew = state.pairs.origin.empty();
+  {
+    std::vector<Vec3> remembered;
+    if (anew)
+      start_lists(engine, state);
+    else
+      remembered = remembered_start(engine, state);
+    const std::vector<Vec3>& start = anew ? g.x : remembered;
+    neighbours::CellGrid grid;
+    neighbours::sort_into_cells(grid, engine.box, start, largest_diameter(g) + engine.skin);
+    grid.slabs = grid.count[0];
+    engine.ring = make_ring(grid.slabs, steps_per_pass);
+    place_rows(engine, g, grid, start);
+    list_outer(engine, g, grid, start);
+  }
+  take_grains(engine, g);
+  measure_accelerations(engine);
   engine.scratch.resize(std::max(engine.scratch.size(), at(threads())));
   list_inner(engine, state.pairs);
-
-  for (std::size_t s = 0; s < engine.slabs.size() && !state.pairs.origin.empty(); ++s) {
-    const double* audited = &state.pairs.origin[4 + 4 * s];
-    engine.slabs[s].excursion = audited[0];
-    engine.slabs[s].drift = {audited[1], audited[2]};
-    engine.slabs[s].steps_left = static_cast<std::int64_t>(audited[3]);
-  }
-  if (state.pairs.origin.empty() && !audit(engine))
+  if (!anew) remember_origin(engine, state.pairs);
+  state.pairs = {};
+  if (anew && !audit(engine))
     throw NumericalError(fmt::format("step {} (t = {:g}): grains move too far per step; the step is too long",
                                      state.step, state.time()));
 }
 
-void store(const Engine& engine, DemState& state) {
-  Grains& g = state.grains;
-  state.step = engine.step;
-  parallel_for(g.flowing, [&](std::int64_t n) {
-    const auto i = at(n), k = engine.row[at(n)];
-    const double *x = &engine.rows.position[position_doubles * k], *v = &engine.rows.velocity[velocity_doubles * k];
-    const double* f = &engine.rows.force[force_doubles * k];
-    g.x[i] = {x[0], x[1], x[2]};
-    g.v[i] = {v[0], v[1], v[2]};
-    g.omega[i] = {v[4], v[5], v[6]};
-    g.force[i] = {f[0], f[1], f[2]};
-    g.torque[i] = {f[4], f[5], f[6]};
-  });
-  PairList& pairs = state.pairs;
-  for (auto* numbers : {&pairs.i, &pairs.j}) numbers->clear();
-  for (auto* vectors : {&pairs.spring, &pairs.roll}) vectors->clear();
-  pairs.image.clear();
-  for (const Section& section : engine.sections)
-    for (std::size_t k = 0; k < section.inner.count; ++k) {
-      const auto a = row_of(section.inner.i[k]), b = row_of(section.inner.j[k]);
-      const double *xa = &engine.rows.position[position_doubles * a], *xb = &engine.rows.position[position_doubles * b];
-      Vec3 r{xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2]};
-      std::array<int, 3> image{};
-      for (int d = 0; d < 3; ++d) {
-        image[at(d)] = static_cast<int>(std::nearbyint(engine.images.inverse[d] * r[d]));
-        r[d] -= engine.images.length[d] * image[at(d)];
-      }
-      const double* h = &section.history[k / 8 * 8 * engine.history_numbers + k % 8];
-      Vec3 spring{h[0], h[8], h[16]}, roll{};
-      if (engine.history_numbers > 3) roll = {h[24], h[32], h[40]};
-      const double reach = xa[3] + xb[3];  // the kernel may have rounded a grazing contact the other way
-      if (norm2(r) >= reach * reach && spring == Vec3{} && roll == Vec3{}) continue;
-      std::int32_t i = engine.grain[a], j = engine.grain[b];
-      auto code = neighbours::image_code(image[0], image[1], image[2]);
-      if (i > j) {
-        std::swap(i, j);
-        code = neighbours::opposite(code);
-        spring = -spring;
-        roll = -roll;
-      }
-      pairs.i.push_back(i);
-      pairs.j.push_back(j);
-      pairs.image.push_back(code);
-      pairs.spring.push_back(spring);
-      pairs.roll.push_back(roll);
-    }
-  pairs.touching.assign(pairs.i.size(), 1);
-  pairs.slab_begin = {0, static_cast<std::int64_t>(pairs.i.size())};
-  pairs.origin = {static_cast<double>(engine.built_at), engine.frame.x, engine.frame.y, engine.frame.z};
-  for (const Slab& slab : engine.slabs)
-    for (const double number :
-         {slab.excursion, slab.drift.speed, slab.drift.distance, static_cast<double>(slab.steps_left)})
-      pairs.origin.push_back(number);
+void enter(Engine& engine, DemState& state, const ContactLaws& laws) {
+  if (!continues(engine, state, laws)) return load(engine, state, laws);
+  state.pairs = {};
+  take_grains(engine, state.grains);
+}
+
+void unload(Engine& engine, DemState& state) {
+  give_all(engine, state);
+  engine.sections.clear();
+}
+
+void leave(Engine& engine, DemState& state) {
+  if (engine.rows.size() == 0) return;
+  give_all(engine, state);
+  give_origin(engine, state);
+  engine.left_behind = fingerprint(state.grains);
 }
 
 }  // namespace bagnold::dem::fast

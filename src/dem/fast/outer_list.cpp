@@ -38,8 +38,7 @@ InCellOrder arrange(const Engine& engine, const Grains& g, const neighbours::Cel
 
 void make_room(Section& section, std::size_t n) {
   if (section.outer_i.size() >= n) return;
-  section.outer_i.resize(n + n / 4);
-  section.outer_j.resize(n + n / 4);
+  for (auto* rows : {&section.outer_i, &section.outer_j}) rows->resize(n + n / 8);
 }
 
 }  // namespace
@@ -50,6 +49,8 @@ void list_outer(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
   engine.sections.resize(engine.slabs.size());
   parallel_for(static_cast<std::int64_t>(engine.sections.size()), [&](std::int64_t s) {
     Section& section = engine.sections[static_cast<std::size_t>(s)];
+    const Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
+    make_room(section, 6 * (slab.end - slab.begin));  // what a dense flow needs
     std::size_t count = 0;
     const auto list = [&](std::int32_t place, std::int32_t begin, std::int32_t end, neighbours::Image image) {
       const auto p = static_cast<std::size_t>(place), last = static_cast<std::size_t>(end);
@@ -74,10 +75,9 @@ void list_outer(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
     neighbours::for_each_range(grid, static_cast<int>(s), list);
     section.outer_count = count;
     make_room(section, count + batch);
-    const std::size_t pads = engine.slabs[static_cast<std::size_t>(s)].end;
     for (std::size_t k = count; k < count + batch; ++k) {
-      section.outer_i[k] = offset_of(pads);
-      section.outer_j[k] = offset_of(pads + 1);
+      section.outer_i[k] = offset_of(slab.end);
+      section.outer_j[k] = offset_of(slab.end + 1);
     }
   });
 }

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "core/numeric.hpp"
@@ -24,7 +25,7 @@ namespace bagnold::dem::fast {
 
 using Lanes = Pack;
 
-// Memory that starts at a cache line.
+// Memory that starts at a cache line; resize() leaves new numbers as they are: pages nobody writes cost nothing.
 template <class T>
 struct CacheAligned {
   using value_type = T;
@@ -33,6 +34,14 @@ struct CacheAligned {
   template <class U>
   CacheAligned(const CacheAligned<U>&) {}
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
+  template <class U>
+  void construct(U* p) {
+    ::new (static_cast<void*>(p)) U;
+  }
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
   void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
   friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
 };
@@ -46,11 +55,6 @@ constexpr std::size_t row_of(Offset offset) { return offset / (position_doubles 
 
 struct Rows {
   Aligned<double> position, velocity, force;
-  void resize(std::size_t n) {
-    position.assign(n * position_doubles, 0);
-    velocity.assign(n * velocity_doubles, 0);
-    force.assign(n * force_doubles, 0);
-  }
   std::size_t size() const { return position.size() / position_doubles; }
 };
 
