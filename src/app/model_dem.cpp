@@ -37,7 +37,9 @@ class DemModel final : public Model {
 
   void advance(double until) override {
     const auto last = static_cast<std::int64_t>(std::ceil(until / in_.state.dt - 1e-6));
-    const std::int64_t chunk = std::max<std::int64_t>(1, 200'000 / std::max<std::int64_t>(1, in_.state.grains.flowing));
+    // Signals are heeded every few tenths of a second; entering and leaving the engine costs a few steps.
+    const std::int64_t chunk =
+        std::max<std::int64_t>(1, 20'000'000 / std::max<std::int64_t>(1, in_.state.grains.flowing));
     while (in_.state.step < last && !ended() && !stop_requested()) {
       std::int64_t steps = std::min(last - in_.state.step, chunk);
       if (arrest_check_ > 0) steps = std::min(steps, arrest_check_ - in_.state.step % arrest_check_);
