@@ -46,27 +46,35 @@ class ShallowModel final : public Model {
   }
   void restored() override {
     shallow::refresh(in_.solver, in_.state);
-    observe(in_, maps_);
+    look(in_, maps_);
     updates_before_ = in_.state.cell_updates;
   }
 
   std::vector<io::Column> series_columns() const override { return shallow_series_columns(in_); }
-  std::vector<double> series_row() override { return shallow_series_row(in_, maps_, initial_mass_); }
+  std::vector<double> series_row() override {
+    look(in_, maps_);
+    return shallow_series_row(in_, maps_, initial_mass_);
+  }
   std::string progress() override {
     const auto row = series_row();
     return fmt::format("front {:.4g}, h {:.3g}, speed {:.3g}", row[4], row[6], row[7]);
   }
 
   void write_snapshot(io::H5File& file, const std::string& group) override {
+    look(in_, maps_);
     write_shallow_snapshot(file, group, in_, maps_);
   }
   std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
                                                              int number) override {
     const std::string name = fmt::format("layer_{:06}.vti", number);
+    look(in_, maps_);
     write_shallow_vti(directory / name, in_, maps_);
     return {{"layer", name}};
   }
-  void write_results(const std::filesystem::path& directory) override { write_shallow_results(directory, in_, maps_); }
+  void write_results(const std::filesystem::path& directory) override {
+    look(in_, maps_);
+    write_shallow_results(directory, in_, maps_);
+  }
 
   void add_summary(nlohmann::ordered_json& summary, double wall_s) override {
     const auto row = series_row();

@@ -1,15 +1,40 @@
 // Closures of the shallow-layer model: a built-in set, a closure.toml, or laws written in the case.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/shallow_input.hpp"
+#include "core/fields.hpp"
 
 namespace bagnold::app {
 namespace {
 
 using config::Case;
 using config::Section;
+
+// Throws at the first key of `s` that is not `known`; fits may add covariances, errors (x_err) and remarks.
+void expect_keys(const Section& s, std::vector<std::string> known) {
+  for (const std::string& key : s.keys()) {
+    if (key == "covariance" || key == "source" || key.ends_with("_err")) continue;
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string hint = nearest(key, known);
+    s.fail(key, fmt::format("unknown key \"{}\", expected one of {}{}", key, fmt::join(known, ", "),
+                            hint.empty() ? "" : fmt::format("; did you mean \"{}\"?", hint)));
+  }
+}
+
+template <class Law>
+Law flow_rule_law(const Section& height, const Section& rule, double d) {
+  Law law;
+  law.delta1_deg = height.get<double>("delta1_deg", std::nullopt, open(0, 90), "deg");
+  law.delta2_deg = height.get<double>("delta2_deg", std::nullopt, open(law.delta1_deg, 90), "deg");
+  law.A = height.get<double>("A", std::nullopt, positive(), "d");
+  law.d = d;
+  law.beta = rule.get<double>("beta", std::nullopt, positive());
+  law.gamma = rule.get<double>("gamma", std::nullopt);
+  return law;
+}
 
 // closure.toml: [stopping_height] and [flow_rule.<lambda>] make the friction law, the rest is optional.
 closure::ClosureSet from_file(const std::string& path, const std::string& lambda, double d, double grain_density) {
@@ -19,26 +44,32 @@ closure::ClosureSet from_file(const std::string& path, const std::string& lambda
   set.name = path;
   set.source = "closure file";
   set.grain_density = grain_density;
-  laws::PouliquenForterre law;
-  law.delta1_deg = height.get<double>("delta1_deg", std::nullopt, open(0, 90), "deg");
-  law.delta2_deg = height.get<double>("delta2_deg", std::nullopt, open(law.delta1_deg, 90), "deg");
-  law.A = height.get<double>("A", std::nullopt, positive(), "d");
-  law.d = d;
+  expect_keys(root,
+              {"stopping_height", "flow_rule", "density", "stress_ratio", "shape_factor", "validity", "provenance"});
+  expect_keys(height, {"law", "delta1_deg", "delta2_deg", "A"});
   const Section rules = root.child("flow_rule");
   const auto known = rules.keys();
   if (known.empty()) root.fail("flow_rule", "expected [flow_rule.<lambda>] with beta and gamma");
   if (!rules.has(lambda))
     rules.fail(lambda, fmt::format("no flow rule for lambda = {}; there are {}", lambda, fmt::join(known, ", ")));
   const Section rule = rules.child(lambda);
-  law.beta = rule.get<double>("beta", std::nullopt, positive());
-  law.gamma = rule.get<double>("gamma", std::nullopt);
+  expect_keys(rule, {"beta", "gamma", "err"});
   if (rule.has("err")) set.flow_rule_error = rule.get<double>("err", std::nullopt, non_negative());
-  set.friction = law;
+  const std::string shape = height.choose("law", "pouliquen-forterre", {"pouliquen-forterre", "exponential"});
+  const auto law = flow_rule_law<laws::PouliquenForterre>(height, rule, d);
+  if (shape == "exponential")
+    set.friction = flow_rule_law<laws::ExponentialFriction>(height, rule, d);
+  else
+    set.friction = law;
   set.static_branch = {.froude_star = std::max(0.0, law.beta - law.gamma),
                        .delta1_deg = law.delta1_deg,
                        .delta2_deg = law.delta2_deg,
                        .delta3_deg = std::min(law.delta1_deg + 1, 89.0),
                        .length = law.A * d};
+  expect_keys(root.child("density"), {"c0", "c1_deg", "c2_deg"});
+  expect_keys(root.child("stress_ratio"), {"d0_deg", "d1_deg"});
+  expect_keys(root.child("shape_factor"), {"alpha", "base_layer"});
+  expect_keys(root.child("validity"), {"theta_deg"});
   if (const Section s = root.child("density"); root.has("density"))
     set.density = laws::ExponentialAngleDensity{s.get<double>("c0", std::nullopt, open(0, 1)),
                                                 s.get<double>("c1_deg", std::nullopt, positive(), "deg"),

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "core/parallel.hpp"
 #include "io/csv.hpp"
 #include "io/vtk.hpp"
 
@@ -53,44 +55,102 @@ void start_maps(const ShallowInput& in, ShallowMaps& m) {
   m.smallest_h = std::numeric_limits<double>::infinity();
   m.largest_h = 0;
   observe(in, m);
+  look(in, m);
 }
 
-void observe(const ShallowInput& in, ShallowMaps& m) {
+namespace {
+
+struct Extremes {
+  double smallest_h = std::numeric_limits<double>::infinity(), largest_h = 0;
+};
+
+// One row of a box. `law` is the friction law without its static branch.
+template <class Law>
+void observe_row(const ShallowInput& in, const Law& law, const shallow::Tile& box, int j, shallow::CellRow& row,
+                 ShallowMaps& m, Extremes& extremes) {
   const shallow::Solver& s = in.solver;
   const shallow::Grid& g = s.setup.grid;
   const closure::Validity& range = s.closure.set.validity;
   const double mu_lo = laws::tan_deg(range.theta_lo_deg), mu_hi = laws::tan_deg(range.theta_hi_deg);
+  shallow::view_cells(s, in.state, box.i0, j, box.nx, row);
+  Pack smallest = extremes.smallest_h, largest = extremes.largest_h;
+  for (int k = 0; k < box.nx; k += Pack::lanes) {
+    const std::size_t padded = g.at(box.i0 + k, j), c = flat(g, box.i0 + k, j);
+    const Mask cells = lanes_between(0, box.nx - k);
+    const Pack h = Pack::load(row.h + k), u = Pack::load(row.u + k), v = Pack::load(row.v + k);
+    const Pack D = Pack::load_unaligned(&in.state.now.D[padded]);
+    const Mask wet = cells & (h > 0.0);
+    smallest = select(cells, min(smallest, D * (1 / s.closure.rho)), smallest);
+    if (!any(wet)) continue;
+    Pack speed2 = u * u + v * v, normal = s.closure.normal;
+    if (s.setup.terrain) {
+      const Pack w = u * Pack::load(row.bx + k) + v * Pack::load(row.by + k);
+      speed2 = speed2 + w * w;
+      normal = normal * Pack::load(row.c + k);
+    }
+    const Pack speed = sqrt(speed2), mu = law.mu(h, speed * rsqrt(max(normal * h, 1e-300)));
+    largest = max(largest, select(wet, h, 0.0));
+    const auto raise = [&](std::vector<double>& field, const Mask& where, const Pack& value) {
+      Pack old = 0.0;
+      for (int lane = 0; lane < std::min(Pack::lanes, box.nx - k); ++lane)
+        old.set(lane, field[c + static_cast<std::size_t>(lane)]);
+      store_where(where & (value > old), value, &field[c]);
+    };
+    raise(m.max_h, wet, h);
+    raise(m.max_speed, wet, speed);
+    raise(m.max_pressure, wet, Pack::load(row.rho + k) * speed2);
+    raise(m.outside, wet & (speed > 0.0) & ((mu < mu_lo) | (mu > mu_hi)), 1.0);
+    for (std::uint32_t arrived = to_integer(wet & (h > in.impact_depth)); arrived != 0; arrived &= arrived - 1) {
+      double& time = m.arrival[c + static_cast<std::size_t>(std::countr_zero(arrived))];
+      if (std::isnan(time)) time = in.state.time;
+    }
+  }
+  for (int lane = 0; lane < Pack::lanes; ++lane) {
+    extremes.smallest_h = std::min(extremes.smallest_h, smallest[lane]);
+    extremes.largest_h = std::max(extremes.largest_h, largest[lane]);
+  }
+}
+
+}  // namespace
+
+void observe(const ShallowInput& in, ShallowMaps& m) {
+  const shallow::Solver& s = in.solver;
+  const auto boxes = static_cast<std::int64_t>(s.active.size());
+  std::vector<Extremes> extremes(s.active.size());
+  std::visit(
+      [&](const auto& friction) {
+        parallel_for(
+            boxes,
+            [&](std::int64_t b) {
+              static thread_local const auto row = std::make_unique<shallow::CellRow>();
+              const auto at = static_cast<std::size_t>(b);
+              const shallow::Tile& box = s.boxes[static_cast<std::size_t>(s.active[at])];
+              for (int j = box.j0; j < box.j0 + box.ny; ++j)
+                observe_row(in, friction.dynamic, box, j, *row, m, extremes[at]);
+            },
+            boxes > 1 && in.state.now.D.size() > 20000);
+      },
+      s.closure.friction);
+  std::int64_t covered = 0;
+  for (std::size_t b = 0; b < extremes.size(); ++b) {
+    m.smallest_h = std::min(m.smallest_h, extremes[b].smallest_h);
+    m.largest_h = std::max(m.largest_h, extremes[b].largest_h);
+    const shallow::Tile& box = s.boxes[static_cast<std::size_t>(s.active[b])];
+    covered += static_cast<std::int64_t>(box.nx) * box.ny;
+  }
+  const shallow::Grid& g = s.setup.grid;
+  if (covered < static_cast<std::int64_t>(g.nx) * g.ny) m.smallest_h = std::min(m.smallest_h, 0.0);  // dry ground
+}
+
+void look(const ShallowInput& in, ShallowMaps& m) {
+  const shallow::Grid& g = in.solver.setup.grid;
   std::vector<double> h, u, v;
   for (int j = 0; j < g.ny; ++j) {
-    const double* D = &in.state.now.D[g.at(0, j)];
-    const std::size_t at = flat(g, 0, j);
-    if (std::none_of(D, D + g.nx, [&](double d) { return d > s.closure.dry_density_depth; })) {
-      for (auto* field : {&m.h, &m.u, &m.v}) std::fill_n(field->begin() + static_cast<std::ptrdiff_t>(at), g.nx, 0.0);
-      m.smallest_h = std::min(m.smallest_h, *std::min_element(D, D + g.nx) / s.closure.rho);
-      continue;
-    }
-    shallow::view_row(s, in.state, j, h, u, v);
-    for (int i = 0; i < g.nx; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const std::size_t c = at + k, padded = g.at(i, j);
-      m.h[c] = h[k];
-      m.u[c] = u[k];
-      m.v[c] = v[k];
-      m.smallest_h = std::min(m.smallest_h, std::min(h[k], D[i] / s.closure.rho));
-      if (!(h[k] > 0)) continue;
-      m.largest_h = std::max(m.largest_h, h[k]);
-      const double speed = speed_of(in, padded, u[k], v[k]);
-      m.max_h[c] = std::max(m.max_h[c], h[k]);
-      m.max_speed[c] = std::max(m.max_speed[c], speed);
-      m.max_pressure[c] = std::max(m.max_pressure[c], D[i] / h[k] * speed * speed);
-      if (h[k] > in.impact_depth && std::isnan(m.arrival[c])) m.arrival[c] = in.state.time;
-      if (speed > 0) {
-        const double normal = s.closure.normal * (s.setup.terrain ? s.cosine[padded] : 1);
-        const double mu = std::visit(
-            [&](const auto& f) { return f.dynamic.mu(h[k], speed / std::sqrt(normal * h[k])); }, s.closure.friction);
-        if (mu < mu_lo || mu > mu_hi) m.outside[c] = 1;
-      }
-    }
+    shallow::view_row(in.solver, in.state, j, h, u, v);
+    const auto at = static_cast<std::ptrdiff_t>(flat(g, 0, j));
+    std::copy(h.begin(), h.end(), m.h.begin() + at);
+    std::copy(u.begin(), u.end(), m.u.begin() + at);
+    std::copy(v.begin(), v.end(), m.v.begin() + at);
   }
 }
 

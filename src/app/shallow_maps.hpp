@@ -15,12 +15,15 @@ struct ShallowMaps {
   std::vector<double> arrival;                         // first time thicker than impact_depth; NaN: never
   std::vector<double> outside;                         // 1 where moving material left the range of the closure
   double smallest_h = 0, largest_h = 0;                // over cells and time
-  // Present values, refreshed by observe(); not part of the state.
+  // Present values, refreshed by look(); not part of the state.
   std::vector<double> h, u, v;
 };
 
 void start_maps(const ShallowInput& in, ShallowMaps& maps);
-void observe(const ShallowInput& in, ShallowMaps& maps);  // reads the state, changes only `maps`
+// After every step: extremes, arrival, validity, over the cells that can be wet.
+void observe(const ShallowInput& in, ShallowMaps& maps);
+// Before anything below is called: present thickness and velocity.
+void look(const ShallowInput& in, ShallowMaps& maps);
 std::vector<NamedArray> map_arrays(ShallowMaps& maps);
 
 std::vector<io::Column> shallow_series_columns(const ShallowInput& in);

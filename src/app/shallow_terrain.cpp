@@ -18,6 +18,8 @@ std::filesystem::path file_of(const Case& input, const Section& section, const s
 
 void read_terrain(const Case& input, const Section& section, shallow::Definition& d, ShallowInput& out) {
   const io::Raster raster = io::read_raster(file_of(input, section, "elevation"));
+  if (io::in_degrees(raster.projection))
+    section.fail("elevation", "its coordinates are degrees; expected a projected coordinate system (lengths)");
   const double g = section.get<double>("gravity", 9.81, positive(), "length/time^2");
   for (std::size_t k = 0; k < raster.values.size(); ++k)
     if (!std::isfinite(raster.values[k]))
@@ -49,11 +51,12 @@ void release_on_terrain(const Case& input, const Section& s, ShallowInput& out) 
     if (!io::same_projection(r.projection, out.projection))
       s.fail("raster", "its projection is not that of the terrain");
     if (r.nx != g.nx || r.ny != g.ny || std::abs(r.x0 - g.x0) > 1e-6 * g.dx || std::abs(r.y0 - g.y0) > 1e-6 * g.dy ||
-        std::abs(r.dx / g.dx - 1) > 1e-9)
+        std::abs(r.dx / g.dx - 1) > 1e-9 || std::abs(r.dy / g.dy - 1) > 1e-9)
       s.fail(
           "raster",
-          fmt::format("its grid ({} x {} cells of {} at {}, {}) is not that of the terrain ({} x {} of {} at {}, {})",
-                      r.nx, r.ny, r.dx, r.x0, r.y0, g.nx, g.ny, g.dx, g.x0, g.y0));
+          fmt::format(
+              "its grid ({} x {} cells of {} x {} at {}, {}) is not that of the terrain ({} x {} of {} x {} at {}, {})",
+              r.nx, r.ny, r.dx, r.dy, r.x0, r.y0, g.nx, g.ny, g.dx, g.dy, g.x0, g.y0));
     for (std::size_t k = 0; k < h.size(); ++k) h[k] = std::isfinite(r.values[k]) ? r.values[k] : 0;
   } else {
     const io::PolygonLayer layer = io::read_polygons(file_of(input, s, "polygons"));

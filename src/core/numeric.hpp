@@ -14,8 +14,19 @@ constexpr bool worthwhile(bool mask) { return mask; }
 constexpr double min(double a, double b) { return b < a ? b : a; }
 constexpr double max(double a, double b) { return a < b ? b : a; }
 inline double sqrt(double a) { return std::sqrt(a); }
+inline double ieee_sqrt(double a) { return std::sqrt(a); }
 inline double rsqrt(double a) { return 1 / std::sqrt(a); }
+inline double power(double a, double exponent) { return std::pow(a, exponent); }
 inline double abs(double a) { return std::fabs(a); }
+constexpr bool any(bool mask) { return mask; }
+// a b + c, fused where the build has the instruction.
+inline double mul_add(double a, double b, double c) {
+#ifdef __FMA__
+  return __builtin_fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
 
 // A vector whose components are of any number type.
 template <class N>

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+
+#include "core/octet.hpp"
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -79,6 +81,9 @@ inline Register inverse_root(Register a) { return 1.0 / root(a); }
 
 struct Mask {
   detail::Bits m;
+  friend Mask operator&(const Mask& a, const Mask& b) { return {static_cast<detail::Bits>(a.m & b.m)}; }
+  friend Mask operator|(const Mask& a, const Mask& b) { return {static_cast<detail::Bits>(a.m | b.m)}; }
+  friend Mask operator!(const Mask& a) { return {static_cast<detail::Bits>(~a.m)}; }
 };
 
 // Eight numbers.
@@ -96,6 +101,12 @@ struct Pack {
     return a;
   }
   void store(double* p) const { *reinterpret_cast<Register*>(p) = v; }
+  static Pack load_unaligned(const double* p) {
+    Pack a;
+    std::memcpy(&a.v, p, sizeof a.v);
+    return a;
+  }
+  void store_unaligned(double* p) const { std::memcpy(p, &v, sizeof v); }
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = a; }
 
@@ -108,15 +119,65 @@ struct Pack {
   friend Pack abs(const Pack& a) { return Pack(detail::magnitude(a.v)); }
   friend Pack sqrt(const Pack& a) { return Pack(detail::root(a.v)); }
   friend Pack rsqrt(const Pack& a) { return Pack(detail::inverse_root(a.v)); }
+  // The processor's own, correctly rounded square root: keeps the multipliers free, where sqrt() keeps the divider free.
+  friend Pack ieee_sqrt(const Pack& a) {
+#ifdef BAGNOLD_AVX512
+    return Pack(static_cast<Register>(_mm512_maskz_sqrt_pd(0xff, a.v)));
+#else
+    return sqrt(a);
+#endif
+  }
+  friend Pack power(Pack a, double exponent) {
+    for (int k = 0; k < lanes; ++k) a.v[k] = std::pow(a.v[k], exponent);
+    return a;
+  }
   friend Mask operator<(const Pack& a, const Pack& b) { return {detail::less(a.v, b.v)}; }
   friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
+  // a b + c, fused where the build has the instruction: for functions of one number, not for sums that must be symmetric.
+  friend Pack mul_add(const Pack& a, const Pack& b, const Pack& c) {
+#ifdef BAGNOLD_AVX512
+    return Pack(static_cast<Register>(_mm512_fmadd_pd(a.v, b.v, c.v)));
+#elif defined(__FMA__)
+    Pack r;
+    for (int k = 0; k < lanes; ++k) r.v[k] = __builtin_fma(a.v[k], b.v[k], c.v[k]);
+    return r;
+#else
+    return a * b + c;
+#endif
+  }
   friend Pack select(const Mask& m, const Pack& a, const Pack& b) { return Pack(detail::blend(m.m, a.v, b.v)); }
 };
+
+// exp(a) for a <= 0, as for one number (core/octet.hpp).
+inline Pack exp_negative(const Pack& a) {
+  return Pack(static_cast<Register>(bagnold::exp_negative<Octet>(static_cast<Octet>(a.v))));
+}
 
 // Bit k is lane k.
 inline std::uint32_t to_integer(const Mask& m) { return detail::to_integer(m.m); }
 inline bool any(const Mask& m) { return to_integer(m) != 0; }
 constexpr bool worthwhile(const Mask&) { return true; }
+// Lanes begin .. end - 1; both may lie outside the pack.
+inline Mask lanes_between(int begin, int end) {
+  const Pack index(Register{0, 1, 2, 3, 4, 5, 6, 7});
+  return (index > Pack(begin - 0.5)) & (index < Pack(end - 0.5));
+}
+// Writes the lanes of the mask, at any address; the others stay as they are.
+inline void store_where(const Mask& mask, const Pack& a, double* p) {
+#ifdef BAGNOLD_AVX512
+  _mm512_mask_storeu_pd(p, mask.m, a.v);
+#else
+  const std::uint32_t bits = to_integer(mask);
+  if (bits == 0xff) return a.store_unaligned(p);
+  for (int k = 0; k < Pack::lanes; ++k)
+    if (bits >> k & 1) p[k] = a[k];
+#endif
+}
+inline double largest(const Pack& a) {
+  double m = a[0];
+  for (int k = 1; k < Pack::lanes; ++k) m = a[k] > m ? a[k] : m;
+  return m;
+}
 
 // Writes the numbers whose bit is set to the front of `out`, which has room for eight; returns how many.
 inline int compress(std::uint32_t bits, const std::uint32_t* in, std::uint32_t* out) {

@@ -147,4 +147,9 @@ bool same_projection(const std::string& a, const std::string& b) {
   return first.IsSame(&second, options) != 0;
 }
 
+bool in_degrees(const std::string& projection) {
+  OGRSpatialReference reference;
+  return reference.importFromWkt(projection.c_str()) == OGRERR_NONE && reference.IsGeographic() != 0;
+}
+
 }  // namespace bagnold::io

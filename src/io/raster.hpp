@@ -38,5 +38,7 @@ bool contains(const Polygon& polygon, double x, double y);
 
 // Whether two projections (WKT) are the same; an absent one matches anything.
 bool same_projection(const std::string& a, const std::string& b);
+// Whether a projection (WKT) is geographic: latitude and longitude rather than lengths.
+bool in_degrees(const std::string& projection);
 
 }  // namespace bagnold::io

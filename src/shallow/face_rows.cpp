@@ -2,176 +2,186 @@
 //
 // Edges: MUSCL with van Leer's limiter on h, u, v and on the surface K h + b, so that a lake at rest is reconstructed
 // flat. Faces: hydrostatic reconstruction (Audusse et al. 2004) in the form of Chen & Noelle 2017, which also drives
-// thin layers on steep steps, with the closures K, alpha, rho averaged over the two cells, then HLL.
-#include <cmath>
-
+// thin layers on steep steps, where the flow is slow; where its head exceeds the step, the bed is continuous (a fast thin
+// layer would be blocked otherwise). Closures K, alpha, rho are averaged over the two cells, then HLL.
 #include "laws/flux/hll.hpp"
 #include "shallow/rows.hpp"
 
 namespace bagnold::shallow {
 namespace {
 
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline double smaller(double a, double b) { return a < b ? a : b; }
-
 // Half of van Leer's slope: the harmonic mean of the two differences, 0 at extrema. Never more than either
 // difference, so edges of h are not negative.
-inline double half_slope(double a, double b) {
-  const double product = a * b;
-  return product > 0 ? product / (a + b) : 0;
+[[gnu::always_inline]] inline Pack half_slope(const Pack& a, const Pack& b) {
+  const Pack product = a * b;
+  return select(product > 0.0, product / (a + b), 0.0);
 }
 
-void limit_row(int begin, int end, double order, const double* __restrict before, const double* __restrict here,
-               const double* __restrict after, double* __restrict minus, double* __restrict plus) {
-#pragma omp simd
-  for (int k = begin; k < end; ++k) {
-    const double s = order * half_slope(here[k] - before[k], after[k] - here[k]);
-    minus[k] = here[k] - s;
-    plus[k] = here[k] + s;
-  }
+[[gnu::always_inline]] inline Pack row_slope(const double* before, const double* here, const double* after, int k) {
+  const Pack c = Pack::load_unaligned(here + k);
+  return half_slope(c - Pack::load_unaligned(before + k), Pack::load_unaligned(after + k) - c);
 }
 
-// Bed at the edges: what the limited surface leaves after the limited depth. Differences are taken with the cell's own
-// K, so that variations of K stay in the pressure. `before` and `after` start at the entry matched with `begin`.
+// Slope of the bed: what the limited surface leaves after the limited depth. Differences are taken with the cell's own
+// K, so that variations of K stay in the pressure.
 template <Geometry G>
-void bed_edges(int begin, int end, double order, const CellRow& rb, const CellRow& r, const CellRow& ra, int shift,
-               EdgeRow& out) {
-  const double *hb = rb.h - shift, *bb = rb.b - shift, *ha = ra.h + shift, *ba = ra.b + shift;
-  const double *cb = rb.c - shift, *ca = ra.c + shift;
-#pragma omp simd
-  for (int k = begin; k < end; ++k) {
-    double push_b = hb[k], push = r.h[k], push_a = ha[k], c = 1;
-    if constexpr (G == Geometry::terrain) {
-      c = r.c[k];
-      push_b *= cb[k];
-      push *= c;
-      push_a *= ca[k];
-    }
-    const double low = r.K[k] * (push - push_b) + (r.b[k] - bb[k]), high = r.K[k] * (push_a - push) + (ba[k] - r.b[k]);
-    const double surface = order * half_slope(low, high);
-    const double depth = r.K[k] * c * order * half_slope(r.h[k] - hb[k], ha[k] - r.h[k]);
-    out.b_minus[k] = r.b[k] - (surface - depth);
-    out.b_plus[k] = r.b[k] + (surface - depth);
+[[gnu::always_inline]] inline Pack bed_slope(const CellRow& rb, const CellRow& r, const CellRow& ra, int k, int shift,
+                                             const Pack& depth_slope) {
+  const auto before = [&](const Row& row) { return Pack::load_unaligned(row + k - shift); };
+  const auto after = [&](const Row& row) { return Pack::load_unaligned(row + k + shift); };
+  const auto here = [&](const Row& row) { return Pack::load_unaligned(row + k); };
+  Pack push_b = before(rb.h), push = here(r.h), push_a = after(ra.h), c = 1.0;
+  if constexpr (G == Geometry::terrain) {
+    c = here(r.c);
+    push_b = push_b * before(rb.c);
+    push = push * c;
+    push_a = push_a * after(ra.c);
   }
+  const Pack K = here(r.K), b = here(r.b);
+  const Pack low = K * (push - push_b) + (b - before(rb.b)), high = K * (push_a - push) + (after(ra.b) - b);
+  return half_slope(low, high) - K * c * depth_slope;
 }
 
 }  // namespace
 
 template <Geometry G>
-void edge_row(int begin, int end, bool second_order, const CellRow& before, const CellRow& here, const CellRow& after,
-              int shift, bool along_y, EdgeRow& out) {
-  const double order = second_order ? 1 : 0;
-  const auto limit = [&](const Row& b, const Row& c, const Row& a, Row& minus, Row& plus) {
-    limit_row(begin, end, order, b - shift, c, a + shift, minus, plus);
-  };
-  limit(before.h, here.h, after.h, out.h_minus, out.h_plus);
-  if (along_y) {
-    limit(before.v, here.v, after.v, out.n_minus, out.n_plus);
-    limit(before.u, here.u, after.u, out.t_minus, out.t_plus);
-  } else {
-    limit(before.u, here.u, after.u, out.n_minus, out.n_plus);
-    limit(before.v, here.v, after.v, out.t_minus, out.t_plus);
+void slope_row(int end, bool second_order, const CellRow& before, const CellRow& here, const CellRow& after, int shift,
+               SlopeRow& out) {
+  for (int k = 0; k < end; k += Pack::lanes) {
+    const Pack h = row_slope(before.h - shift, here.h, after.h + shift, k);
+    h.store_unaligned(out.h + k);
+    row_slope(before.u - shift, here.u, after.u + shift, k).store_unaligned(out.u + k);
+    row_slope(before.v - shift, here.v, after.v + shift, k).store_unaligned(out.v + k);
+    if constexpr (G != Geometry::flat) bed_slope<G>(before, here, after, k, shift, h).store_unaligned(out.b + k);
+    if (!second_order)
+      for (double* row : {out.h, out.u, out.v, out.b}) Pack(0.0).store_unaligned(row + k);
   }
-  if constexpr (G != Geometry::flat) bed_edges<G>(begin, end, order, before, here, after, shift, out);
 }
 
 // Rise of the surface K h + b across each face, less the fall of the chart. A dry cell takes from a higher neighbour
 // but gives nothing to a lower one.
 template <Geometry G>
-void drop_row(int begin, int end, const CellRow& before, const CellRow& after, int shift, const double* fall,
-              FaceRow& out) {
-  const double *ha = after.h + shift, *ba = after.b + shift, *Ka = after.K + shift, *ca = after.c + shift;
-#pragma omp simd
-  for (int f = begin; f < end; ++f) {
-    double push_b = before.h[f], push_a = ha[f];
+void drop_row(int end, const CellRow& before, const CellRow& after, int shift, const double* fall, double* drop) {
+  for (int f = 0; f < end; f += Pack::lanes) {
+    const auto B = [&](const Row& row) { return Pack::load_unaligned(row + f); };
+    const auto A = [&](const Row& row) { return Pack::load_unaligned(row + f + shift); };
+    const Pack hb = B(before.h), ha = A(after.h);
+    Pack push_b = hb, push_a = ha;
     if constexpr (G == Geometry::terrain) {
-      push_b *= before.c[f];
-      push_a *= ca[f];
+      push_b = push_b * B(before.c);
+      push_a = push_a * A(after.c);
     }
-    double rise = 0.5 * (before.K[f] + Ka[f]) * (push_a - push_b) - fall[f];
-    if constexpr (G != Geometry::flat) rise += ba[f] - before.b[f];
-    const bool blocked = ((rise > 0) & !(ha[f] > 0)) | ((rise < 0) & !(before.h[f] > 0));
-    out.drop[f] = blocked ? 0 : rise;
+    Pack rise = 0.5 * (B(before.K) + A(after.K)) * (push_a - push_b) - Pack::load_unaligned(fall + f);
+    if constexpr (G != Geometry::flat) rise = rise + (A(after.b) - B(before.b));
+    const Mask blocked = ((rise > 0.0) & !(ha > 0.0)) | ((rise < 0.0) & !(hb > 0.0));
+    select(blocked, 0.0, rise).store_unaligned(drop + f);
   }
 }
+
+namespace {
+
+// What terrain adds to a face: cosine of the slope, inverse metric a^nn along the normal at the face and on both sides.
+struct Metric {
+  Pack c = 1.0, at_face = 1.0, before = 1.0, after = 1.0;
+};
 
 // A face is locked, without flux of mass, where both cells are at rest and friction can hold the surface between them:
 // this is what keeps deposits in place to the last bit. The test is on the slope vector, so it turns with the grid.
 template <Geometry G>
+Mask locked_faces(const FaceArgs& a, int f, const Pack& K, const Metric& metric) {
+  const CellRow &B = *a.before, &A = *a.after;
+  const auto b = [&](const Row& row) { return Pack::load_unaligned(row + f); };
+  const auto c = [&](const Row& row) { return Pack::load_unaligned(row + f + a.shift); };
+  constexpr double round_off = 1e-15;
+  const Pack hB = b(B.h), hA = c(A.h), rise = Pack::load_unaligned(a.drop + f);
+  Pack size = K * (hB + hA);
+  if constexpr (G != Geometry::flat) size = (abs(b(B.b)) + abs(c(A.b))) + size;
+  const Pack normal = max(0.0, abs(rise) - round_off * size) * a.inv_d;
+  const Pack wet_b = select(hB > 0.0, Pack(1.0), 0.0), wet_a = select(hA > 0.0, Pack(1.0), 0.0);
+  const Pack share = select(wet_b + wet_a > 1.0, Pack(0.5), 1.0);
+  const Pack tangent = share * (wet_b * b(a.along_y ? B.gx : B.gy) + wet_a * c(a.along_y ? A.gx : A.gy));
+  Pack steepness = normal * normal + tangent * tangent, hold = max(b(B.hold), c(A.hold));
+  if constexpr (G == Geometry::terrain) {
+    const Pack n = 0.5 * (b(a.along_y ? B.by : B.bx) + c(a.along_y ? A.by : A.bx)),
+               s = 0.5 * (b(a.along_y ? B.bx : B.by) + c(a.along_y ? A.bx : A.by));
+    const Pack along = metric.c * (n * (rise * a.inv_d) + s * tangent);
+    steepness = max(0.0, steepness - along * along);
+    hold = hold * metric.c;
+  }
+  return !(hold * hold < steepness);
+}
+
+}  // namespace
+
+template <Geometry G>
 void face_row(const FaceArgs& a, FaceRow& out) {
   const CellRow &B = *a.before, &A = *a.after;
-  const int o = a.shift;
-  const double *h_plus = a.edge_before->h_plus, *n_plus = a.edge_before->n_plus, *t_plus = a.edge_before->t_plus,
-               *b_plus = a.edge_before->b_plus;
-  const double *h_minus = a.edge_after->h_minus + o, *n_minus = a.edge_after->n_minus + o,
-               *t_minus = a.edge_after->t_minus + o, *b_minus = a.edge_after->b_minus + o;
-  const double *hA = A.h + o, *KA = A.K + o, *rhoA = A.rho + o, *alphaA = A.alpha + o, *slopeA = A.slope + o,
-               *holdA = A.hold + o, *restA = A.rest + o, *bA = A.b + o, *cA = A.c + o;
-  const double *tangent_B = a.along_y ? B.gx : B.gy, *tangent_A = (a.along_y ? A.gx : A.gy) + o;
-  const double *n_B = a.along_y ? B.by : B.bx,
-               *n_A = (a.along_y ? A.by : A.bx) + o;  // terrain: bed slope along the normal
-  const double *s_B = a.along_y ? B.bx : B.by, *s_A = (a.along_y ? A.bx : A.by) + o;
-  const double g = a.normal_g, inv_d = a.inv_d;
-  constexpr double round_off = 1e-15;
-#pragma omp simd
-  for (int f = a.begin; f < a.end; ++f) {
-    const double K = 0.5 * (B.K[f] + KA[f]);
-    double gK = g * K, cf = 1, metric_f = 1, metric_b = 1, metric_a = 1, hold_scale = 1;
+  const SlopeRow &SB = *a.slope_before, &SA = *a.slope_after;
+  const bool may_lock = B.any_rest && A.any_rest;
+  const double g = a.normal_g;
+  for (int f = 0; f < a.end; f += Pack::lanes) {
+    const auto b = [&](const Row& row) { return Pack::load_unaligned(row + f); };
+    const auto c = [&](const Row& row) { return Pack::load_unaligned(row + f + a.shift); };
+    const Pack K = 0.5 * (b(B.K) + c(A.K));
+    Pack gK = g * K;
+    Metric metric;
     if constexpr (G == Geometry::terrain) {
-      cf = 0.5 * (B.c[f] + cA[f]);
-      metric_b = 1 - n_B[f] * n_B[f] * B.c[f] * B.c[f];  // a^nn, inverse metric along the normal
-      metric_a = 1 - n_A[f] * n_A[f] * cA[f] * cA[f];
-      metric_f = 0.5 * (metric_b + metric_a);
-      gK *= metric_f * cf;
-      hold_scale = cf;
+      const Pack cB = b(B.c), cA = c(A.c), nB = b(a.along_y ? B.by : B.bx), nA = c(a.along_y ? A.by : A.bx);
+      metric.c = 0.5 * (cB + cA);
+      metric.before = 1.0 - nB * nB * cB * cB;
+      metric.after = 1.0 - nA * nA * cA * cA;
+      metric.at_face = 0.5 * (metric.before + metric.after);
+      gK = gK * metric.at_face * metric.c;
     }
-    const laws::ShallowFace face{0.5 * (B.rho[f] + rhoA[f]), 0.5 * (B.alpha[f] + alphaA[f]), gK,
-                                 larger(B.slope[f], slopeA[f])};
-    laws::ShallowSide left{h_plus[f], n_plus[f], t_plus[f]}, right{h_minus[f], n_minus[f], t_minus[f]};
-    double extra_left = 0, extra_right = 0;
+    const laws::ShallowFace<Pack> face{0.5 * (b(B.rho) + c(A.rho)), 0.5 * (b(B.alpha) + c(A.alpha)), gK,
+                                       max(b(B.slope), c(A.slope))};
+    const Pack uB = b(B.u) + b(SB.u), vB = b(B.v) + b(SB.v), uA = c(A.u) - c(SA.u), vA = c(A.v) - c(SA.v);
+    laws::ShallowSide<Pack> left{b(B.h) + b(SB.h), a.along_y ? vB : uB, a.along_y ? uB : vB},
+        right{c(A.h) - c(SA.h), a.along_y ? vA : uA, a.along_y ? uA : vA};
+    Pack extra_left = 0.0, extra_right = 0.0;
     if constexpr (G != Geometry::flat) {
-      const double psi_l = K * cf * left.h, psi_r = K * cf * right.h;
-      const double eta_l = psi_l + b_plus[f], eta_r = psi_r + b_minus[f];
-      const double step = smaller(larger(b_plus[f], b_minus[f]), smaller(eta_l, eta_r));
-      const double inv = 1 / (K * cf);
-      const double h_l = larger(0, smaller(eta_l - step, psi_l)) * inv,
-                   h_r = larger(0, smaller(eta_r - step, psi_r)) * inv;
-      extra_left = g * metric_b * face.rho * (0.5 * (left.h + h_l)) * (step - b_plus[f]);
-      extra_right = g * metric_a * face.rho * (0.5 * (right.h + h_r)) * (step - b_minus[f]);
+      const Pack b_plus = b(B.b) + b(SB.b), b_minus = c(A.b) - c(SA.b), Kc = K * metric.c, inv = 1.0 / Kc;
+      const Pack psi_l = Kc * left.h, psi_r = Kc * right.h, eta_l = psi_l + b_plus, eta_r = psi_r + b_minus;
+      const Pack low = min(max(b_plus, b_minus), min(eta_l, eta_r));
+      const Pack push_l = max(0.0, min(eta_l - low, psi_l)), push_r = max(0.0, min(eta_r - low, psi_r));
+      // A layer that runs fast enough climbs the step, however thin it is: towards a bed continuous at the face.
+      const Pack climb = g * abs(b_plus - b_minus) + 1e-200, head = max(left.un * left.un, right.un * right.un);
+      const Pack fast = min(max(head / climb - 1.0, 0.0), 1.0), slow = 1.0 - fast;
+      const Pack step = slow * low + fast * (0.5 * (b(B.b) + c(A.b)));
+      const Pack h_l = slow * (push_l * inv) + fast * left.h, h_r = slow * (push_r * inv) + fast * right.h;
+      extra_left = g * metric.before * face.rho * (0.5 * (left.h + h_l)) * (step - b_plus);
+      extra_right = g * metric.after * face.rho * (0.5 * (right.h + h_r)) * (step - b_minus);
       if constexpr (G == Geometry::terrain) {  // each cell sees the pressure with its own metric
-        extra_left += 0.5 * g * K * face.rho * (metric_b * B.c[f] - metric_f * cf) * (h_l * h_l);
-        extra_right += 0.5 * g * K * face.rho * (metric_a * cA[f] - metric_f * cf) * (h_r * h_r);
+        const Pack own = metric.at_face * metric.c, half = 0.5 * g * K * face.rho;
+        extra_left = extra_left + half * (metric.before * b(B.c) - own) * (h_l * h_l);
+        extra_right = extra_right + half * (metric.after * c(A.c) - own) * (h_r * h_r);
       }
       left.h = h_l;
       right.h = h_r;
     }
-    const laws::ShallowFlux flux = laws::hll(face, left, right);
-
-    const double wet_b = B.h[f] > 0 ? 1 : 0, wet_a = hA[f] > 0 ? 1 : 0, wet = wet_b + wet_a;
-    const double slack = round_off * ((std::abs(B.b[f]) + std::abs(bA[f])) + K * (B.h[f] + hA[f]));
-    const double normal = larger(0, std::abs(out.drop[f]) - slack) * inv_d;
-    const double share = wet > 1 ? 0.5 : 1;
-    const double tangent = share * (wet_b * tangent_B[f] + wet_a * tangent_A[f]);
-    double steepness = normal * normal + tangent * tangent;
-    if constexpr (G == Geometry::terrain) {
-      const double nf = 0.5 * (n_B[f] + n_A[f]), sf = 0.5 * (s_B[f] + s_A[f]), signed_drop = out.drop[f] * inv_d;
-      const double along = cf * (nf * signed_drop + sf * tangent);
-      steepness = larger(0, steepness - along * along);
+    laws::ShallowFlux<Pack> flux = laws::hll(face, left, right);
+    (flux.normal + extra_left).store_unaligned(out.before + f);
+    (flux.normal + extra_right).store_unaligned(out.after + f);
+    flux.speed.store_unaligned(out.speed + f);
+    Pack locked = 0.0;
+    if (may_lock) {
+      const Mask both_rest = b(B.rest) * c(A.rest) > 0.0;
+      if (any(both_rest)) {
+        const Mask m = both_rest & locked_faces<G>(a, f, K, metric);
+        flux.mass = select(m, 0.0, flux.mass);
+        flux.tangential = select(m, 0.0, flux.tangential);
+        locked = select(m, Pack(1.0), 0.0);
+      }
     }
-    const double hold = larger(B.hold[f], holdA[f]) * hold_scale;
-    const bool locked = (B.rest[f] * restA[f] != 0) & (steepness <= hold * hold);
-    out.locked[f] = locked ? 1 : 0;
-    out.mass[f] = locked ? 0 : flux.mass;
-    out.before[f] = flux.normal + extra_left;
-    out.after[f] = flux.normal + extra_right;
-    out.tangential[f] = locked ? 0 : flux.tangential;
-    out.speed[f] = flux.speed;
+    flux.mass.store_unaligned(out.mass + f);
+    flux.tangential.store_unaligned(out.tangential + f);
+    locked.store_unaligned(out.locked + f);
   }
 }
 
-#define BAGNOLD_INSTANTIATE(G)                                                                                    \
-  template void edge_row<G>(int, int, bool, const CellRow&, const CellRow&, const CellRow&, int, bool, EdgeRow&); \
-  template void drop_row<G>(int, int, const CellRow&, const CellRow&, int, const double*, FaceRow&);              \
+#define BAGNOLD_INSTANTIATE(G)                                                                           \
+  template void slope_row<G>(int, bool, const CellRow&, const CellRow&, const CellRow&, int, SlopeRow&); \
+  template void drop_row<G>(int, const CellRow&, const CellRow&, int, const double*, double*);           \
   template void face_row<G>(const FaceArgs&, FaceRow&);
 BAGNOLD_INSTANTIATE(Geometry::flat)
 BAGNOLD_INSTANTIATE(Geometry::bed)

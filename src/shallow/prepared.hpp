@@ -5,25 +5,24 @@
 #include <functional>
 
 #include "closure/closure_set.hpp"
-#include "core/unrolled.hpp"
+#include "core/numeric.hpp"
 #include "shallow/definition.hpp"
 
 namespace bagnold::shallow {
 
-// Chebyshev interpolant of a smooth function on [lo, hi], evaluated by Horner's rule; constant beyond the ends.
+// Chebyshev interpolant of a smooth function on [lo, hi], evaluated by Estrin's scheme; constant beyond the ends.
 struct Polynomial {
   static constexpr int degree = 9;
   std::array<double, degree + 1> coefficient{};
   double middle = 0, inverse_half_width = 0;
   static Polynomial fit(double lo, double hi, const std::function<double(double)>& f);
-  [[gnu::always_inline]] double operator()(double x) const {
-    double s = (x - middle) * inverse_half_width;
-    s = 0.5 * (std::abs(s + 1) - std::abs(s - 1));  // clamped to [-1, 1] without a branch
-    double y = coefficient[degree];
-    unrolled<degree>([&](int k) __attribute__((always_inline)) {
-      y = y * s + coefficient[static_cast<std::size_t>(degree - 1 - k)];
-    });
-    return y;
+  template <class N>
+  [[gnu::always_inline]] N operator()(const N& x) const {
+    const N s = min(max((x - middle) * inverse_half_width, N(-1.0)), N(1.0));
+    const auto pair = [&](std::size_t k) { return mul_add(N(coefficient[k + 1]), s, N(coefficient[k])); };
+    const N s2 = s * s, s4 = s2 * s2;
+    const N low = mul_add(pair(2), s2, pair(0)), high = mul_add(pair(6), s2, pair(4));
+    return mul_add(mul_add(pair(8), s4, high), s4, low);
   }
 };
 

@@ -14,13 +14,19 @@ struct StageResult {
   std::int64_t wet = 0;   // cells
 };
 
+// A box of cells.
+struct Tile {
+  int i0 = 0, j0 = 0, nx = 0, ny = 0;
+  bool empty() const { return nx <= 0 || ny <= 0; }
+};
+
 // Where a ghost cell takes its value from: its mirror image, the edge cell of its row, or the cell across the domain.
 struct Ghost {
   std::size_t to, mirror, edge, across;
 };
 
 // Everything derived from the set-up that a step needs. Built once; nothing here changes the result of a step but the
-// set-up itself (which tiles are active only says where there is something to do).
+// set-up itself (the boxes only say where there is something to do).
 struct Solver {
   Definition setup;
   PreparedClosure closure;
@@ -33,10 +39,11 @@ struct Solver {
   Conserved predicted, next;                 // stage 1; result (before: fluxes of stage 1)
   std::array<std::vector<Ghost>, 4> ghosts;  // by Side
   int tiles_x = 1, tiles_y = 1;
-  std::vector<int> active;             // tiles to compute
+  std::vector<Tile> boxes;             // of each tile, the cells that are wet or can get wet in one step
+  std::vector<int> active;             // tiles whose box is not empty
   std::vector<double> crossing[2][4];  // boundary mass flux of each stage
   std::vector<StageResult> tile_results;
-  std::vector<std::uint8_t> tile_wanted;
+  std::vector<Tile> wet_boxes, grown_boxes;  // scratch of find_active_tiles()
 };
 
 // Throws UnphysicalError for a set-up that means nothing (sizes, gravity, CFL, periodic sides that do not pair, ...).
@@ -50,11 +57,13 @@ struct CellView {
   double h, u, v, rho, K, alpha, mu, froude;
 };
 CellView view_cell(const Solver& solver, const State& state, int i, int j);
+// Cells i ... i + n - 1 of row j, at most max_tile, with the kernels of the solver.
+void view_cells(const Solver& solver, const State& state, int i, int j, int n, CellRow& row);
 // h, u, v of one row of the grid, with the kernels of the solver.
 void view_row(const Solver& solver, const State& state, int j, std::vector<double>& h, std::vector<double>& u,
               std::vector<double>& v);
 
-// Call after the state has been set or restored: finds the wet tiles.
+// Call after the state has been set or restored: finds the wet cells.
 void refresh(Solver& solver, State& state);
 // One step of SSP-RK2 (Heun) of the size the CFL number allows. Throws NumericalError naming cell and time.
 void advance_one_step(Solver& solver, State& state);

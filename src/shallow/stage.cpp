@@ -2,7 +2,9 @@
 // closed, then the faces below and the row r - 2 are finished. Every cell is computed from the same numbers in the
 // same order whatever the tiles and threads, so neither shows in the result.
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <limits>
+#include <memory>
 
 #include "shallow/solver.hpp"
 
@@ -11,18 +13,13 @@ namespace {
 
 struct Scratch {
   CellRow cells[4];
-  EdgeRow x_edges, y_edges[2];
+  SlopeRow x_slopes, y_slopes[2];
   FaceRow x_faces, y_faces[2];
   alignas(64) Row D_new, Msx, Msy, bend, fall;
-  alignas(64) Row rate, bad, wet;
 };
 
 // Grids smaller than this are computed by one thread: starting the others would cost more.
 constexpr std::size_t parallel_threshold = 20000;
-
-struct Tile {
-  int i0, j0, nx, ny;
-};
 
 // In one dimension nothing crosses the faces above and below.
 void still_rows(Scratch& w) {
@@ -31,13 +28,7 @@ void still_rows(Scratch& w) {
     std::fill_n(f.locked, row_size, 1.0);
   }
   std::fill_n(w.cells[0].gy, row_size, 0.0);
-  for (EdgeRow& e : w.y_edges) e = {};
-}
-
-Tile tile_at(const Solver& s, int index) {
-  const Grid& g = s.setup.grid;
-  const int i0 = (index % s.tiles_x) * s.setup.scheme.tile_nx, j0 = (index / s.tiles_x) * s.setup.scheme.tile_ny;
-  return {i0, j0, std::min(s.setup.scheme.tile_nx, g.nx - i0), std::min(s.setup.scheme.tile_ny, g.ny - j0)};
+  for (SlopeRow& e : w.y_slopes) e = {};
 }
 
 template <Geometry G>
@@ -54,27 +45,33 @@ class Sweep {
         start_(state.now),
         from_(number == 1 ? state.now : s.predicted) {}
 
-  void run() {
-    if (!g_.two_d()) return run_row();
-    for (int r = t_.j0 - halo; r < t_.j0 + t_.ny + halo; ++r) {
-      close_cells(r);
-      if (r < t_.j0) {
-        if (r > t_.j0 - halo) find_drops(r);
-        continue;
-      }
-      find_drops(r);
-      const int q = r - 1;  // its neighbours above and below are closed
-      find_slopes(q);
-      edge_row<G>(0, n_, s_.setup.scheme.second_order, cell(q - 1), cell(q), cell(q + 1), 0, true, w_.y_edges[q & 1]);
-      if (q < t_.j0) continue;
-      find_y_fluxes(q);
-      if (q > t_.j0) finish(q - 1);
-    }
+  StageResult run() {
+    if (!g_.two_d())
+      run_row();
+    else
+      run_rows();
+    result_.rate = largest(rate_);
+    for (int k = 0; k < Pack::lanes; ++k) result_.wet += static_cast<std::int64_t>(wet_[k]);
+    return result_;
   }
 
  private:
   CellRow& cell(int j) { return w_.cells[j & 3]; }
   FaceRow& below(int j) { return w_.y_faces[j & 1]; }  // faces between rows j - 1 and j
+
+  void run_rows() {
+    for (int r = t_.j0 - halo; r < t_.j0 + t_.ny + halo; ++r) {
+      close_cells(r);
+      if (r > t_.j0 - halo) find_drops(r);
+      if (r < t_.j0) continue;
+      const int q = r - 1;  // its neighbours above and below are closed
+      find_slopes(q);
+      slope_row<G>(halo + t_.nx, second_order_, cell(q - 1), cell(q), cell(q + 1), 0, w_.y_slopes[q & 1]);
+      if (q < t_.j0) continue;
+      find_y_fluxes(q);
+      if (q > t_.j0) finish(q - 1);
+    }
+  }
 
   void close_cells(int j) {
     const std::size_t at = g_.at(t_.i0 - halo, j);
@@ -86,35 +83,50 @@ class Sweep {
       std::copy_n(&s_.bed_y[at], n_, row.by);
     }
     s_.kernels.closures(s_.closure, n_, &from_.D[at], &from_.Mx[at], &from_.My[at], row);
+    prefetch(from_, at + static_cast<std::size_t>(g_.stride()));
+    if (j < t_.j0 + 1) return;  // row j - 1 will be the next to be finished
+    prefetch(s_.next, at - static_cast<std::size_t>(g_.stride()));
+    prefetch(number_ == 1 ? s_.predicted : start_, at - static_cast<std::size_t>(g_.stride()));
+  }
+
+  void prefetch(const Conserved& u, std::size_t at) const {
+    for (int k = 0; k < n_; k += Pack::lanes)
+      for (const auto* field : {&u.D, &u.Mx, &u.My}) __builtin_prefetch(field->data() + at + k);
   }
 
   bool wall(Side side) const { return s_.setup.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::wall; }
 
+  // Drops and slopes of the surface say whether faces are locked, which only matters between cells at rest; terrain also
+  // needs them for its metric.
+  bool needs_surface(int j) { return G == Geometry::terrain || cell(j).any_rest; }
+
   void find_drops(int j) {
+    if (!needs_surface(j - 1) && !needs_surface(j)) return;
     const bool at_wall = (j == 0 && wall(Side::bottom)) || (j == g_.ny && wall(Side::top));
-    std::fill_n(w_.fall, n_, at_wall ? 0 : s_.fall_y);
-    drop_row<G>(0, n_, cell(j - 1), cell(j), 0, w_.fall, below(j));
+    std::fill_n(w_.fall, n_ + Pack::lanes, at_wall ? 0 : s_.fall_y);
+    drop_row<G>(n_, cell(j - 1), cell(j), 0, w_.fall, below(j).drop);
   }
 
   // Slope of the surface in row j, from the drops over the four faces of each cell.
   void find_slopes(int j) {
-    drop_row<G>(0, n_ - 1, cell(j), cell(j), 1, &s_.fall_x[static_cast<std::size_t>(t_.i0)], w_.x_faces);
+    if (!needs_surface(j)) return;
     CellRow& row = cell(j);
+    drop_row<G>(n_ - 1, row, row, 1, &s_.fall_x[static_cast<std::size_t>(t_.i0)], row.drop);
     const double half_x = 0.5 / g_.dx, half_y = 0.5 / g_.dy;
-    const double *x = w_.x_faces.drop, *low = below(j).drop, *high = below(j + 1).drop;
+    const double *x = row.drop, *low = below(j).drop, *high = below(j + 1).drop;
     for (int k = 1; k < n_ - 1; ++k) row.gx[k] = half_x * (x[k - 1] + x[k]);
     if (g_.two_d())
       for (int k = 0; k < n_; ++k) row.gy[k] = half_y * (low[k] + high[k]);
   }
 
   void find_y_fluxes(int j) {
-    face_row<G>({.begin = halo,
-                 .end = halo + t_.nx,
+    face_row<G>({.end = halo + t_.nx,
                  .before = &cell(j - 1),
                  .after = &cell(j),
                  .shift = 0,
-                 .edge_before = &w_.y_edges[(j - 1) & 1],
-                 .edge_after = &w_.y_edges[j & 1],
+                 .slope_before = &w_.y_slopes[(j - 1) & 1],
+                 .slope_after = &w_.y_slopes[j & 1],
+                 .drop = below(j).drop,
                  .normal_g = s_.closure.normal,
                  .inv_d = 1 / g_.dy,
                  .along_y = true},
@@ -122,15 +134,15 @@ class Sweep {
   }
 
   void find_x_fluxes(int j) {
-    drop_row<G>(0, n_ - 1, cell(j), cell(j), 1, &s_.fall_x[static_cast<std::size_t>(t_.i0)], w_.x_faces);
-    edge_row<G>(1, n_ - 1, s_.setup.scheme.second_order, cell(j), cell(j), cell(j), 1, false, w_.x_edges);
-    face_row<G>({.begin = 1,
-                 .end = halo + t_.nx,
-                 .before = &cell(j),
-                 .after = &cell(j),
+    const CellRow& row = cell(j);
+    slope_row<G>(n_ - 1, second_order_, row, row, row, 1, w_.x_slopes);
+    face_row<G>({.end = halo + t_.nx,
+                 .before = &row,
+                 .after = &row,
                  .shift = 1,
-                 .edge_before = &w_.x_edges,
-                 .edge_after = &w_.x_edges,
+                 .slope_before = &w_.x_slopes,
+                 .slope_after = &w_.x_slopes,
+                 .drop = row.drop,
                  .normal_g = s_.closure.normal,
                  .inv_d = 1 / g_.dx,
                  .along_y = false},
@@ -148,7 +160,7 @@ class Sweep {
     if constexpr (G == Geometry::terrain) curve(j);
     balance(j);
     apply_friction(j);
-    record(j);
+    record_crossings(j);
   }
 
   // Acceleration normal to the curved bed, b_jk u_j u_k cos(slope).
@@ -165,7 +177,7 @@ class Sweep {
   // Mass and momentum after fluxes and gravity, before friction.
   void balance(int j);
   void apply_friction(int j);
-  void record(int j);
+  void record_crossings(int j);
 
   Solver& s_;
   const Grid& g_;
@@ -175,117 +187,124 @@ class Sweep {
   Tile t_;
   int n_;
   const Conserved &start_, &from_;
+  const bool second_order_ = s_.setup.scheme.second_order;
+  StageResult result_;
+  Pack rate_ = 0.0, wet_ = 0.0;
 };
 
 template <Geometry G>
 void Sweep<G>::balance(int j) {
   const CellRow& row = cell(j);
   const FaceRow &X = w_.x_faces, &S = below(j), &N = below(j + 1);
-  const EdgeRow &ex = w_.x_edges, &ey = w_.y_edges[j & 1];
-  const bool two_d = g_.two_d();
+  const SlopeRow &ex = w_.x_slopes, &ey = w_.y_slopes[j & 1];
+  const bool second = number_ == 2, two_d = g_.two_d(), channel = !s_.setup.width.empty();
   const double inv_dx = 1 / g_.dx, inv_dy = two_d ? 1 / g_.dy : 0, dt = dt_, g = s_.closure.normal;
   const double push_x = g * s_.setup.gravity.slope_x, push_y = two_d ? g * s_.setup.gravity.slope_y : 0;
-  const auto shift = static_cast<std::size_t>(t_.i0);
-  const double *Wf = &s_.width_face[shift], *inv_W = &s_.inverse_width[shift];
-  const std::size_t at = g_.at(t_.i0 - halo, j);
+  const double dry = s_.closure.dry_density_depth, huge = std::numeric_limits<double>::max();
+  const double *W = &s_.width_face[static_cast<std::size_t>(t_.i0)],
+               *inv_W = &s_.inverse_width[static_cast<std::size_t>(t_.i0)];
+  const std::size_t start = g_.at(t_.i0 - halo, j);
   const std::ptrdiff_t up = g_.stride();
-  const double *cosine = nullptr, *area = nullptr;
-  if constexpr (G == Geometry::terrain) {
-    cosine = &s_.cosine[at];
-    area = &s_.area[at];
-  }
-  const double *D0 = &start_.D[at], *Mx0 = &start_.Mx[at], *My0 = &start_.My[at];
-  const double* D1 = &from_.D[at];
-  double *Lx = &s_.next.Mx[at], *Ly = &s_.next.My[at];
-  const bool second = number_ == 2;
-#pragma GCC ivdep
-  for (int k = halo; k < halo + t_.nx; ++k) {
+  double *Lx = &s_.next.Mx[start], *Ly = &s_.next.My[start];
+  for (int k = 0; k < halo + t_.nx; k += Pack::lanes) {
+    const auto at = [&](const double* r) { return Pack::load_unaligned(r + k); };
+    const auto in = [&](const std::vector<double>& field) { return Pack::load_unaligned(&field[start] + k); };
+    const Mask cells = lanes_between(halo - k, halo + t_.nx - k);
     // area factors: width of a channel, or area of sloping ground per horizontal area
-    double We = Wf[k], Ww = Wf[k - 1], Wn = 1, Ws = 1, inv_A = inv_W[k], metric_x = 1, metric_y = 1, gx_c = g, gy_c = g;
-    if constexpr (G == Geometry::terrain) {
-      const double J = area[k], c2 = cosine[k] * cosine[k];
-      We = 0.5 * (J + area[k + 1]);
-      Ww = 0.5 * (area[k - 1] + J);
-      Wn = 0.5 * (J + area[k + up]);
-      Ws = 0.5 * (area[k - up] + J);
-      inv_A = cosine[k];
-      metric_x = 1 - row.bx[k] * row.bx[k] * c2;
-      metric_y = 1 - row.by[k] * row.by[k] * c2;
-      gx_c = g * metric_x * cosine[k];
-      gy_c = g * metric_y * cosine[k];
+    Pack We = 1.0, Ww = 1.0, Wn = 1.0, Ws = 1.0, inv_A = 1.0, metric_x = 1.0, metric_y = 1.0, c = 1.0;
+    if (channel) {
+      We = at(W);
+      Ww = at(W - 1);
+      inv_A = at(inv_W);
     }
-    const double D = row.rho[k] * row.h[k], half_PK = 0.5 * row.K[k] * D * row.h[k];
-    const double ax = inv_A * inv_dx, ay = inv_A * inv_dy;
-    const double rD = -(ax * (We * X.mass[k] - Ww * X.mass[k - 1]) + ay * (Wn * N.mass[k] - Ws * S.mass[k]));
-    double rx = -(ax * ((We * X.before[k] - Ww * X.after[k - 1]) - half_PK * gx_c * (We - Ww)) +
-                  ay * (Wn * N.tangential[k] - Ws * S.tangential[k]));
-    double ry = -(ay * ((Wn * N.before[k] - Ws * S.after[k]) - half_PK * gy_c * (Wn - Ws)) +
-                  ax * (We * X.tangential[k] - Ww * X.tangential[k - 1]));
+    if constexpr (G == Geometry::terrain) {
+      const Pack J = in(s_.area);
+      We = 0.5 * (J + Pack::load_unaligned(&s_.area[start] + k + 1));
+      Ww = 0.5 * (Pack::load_unaligned(&s_.area[start] + k - 1) + J);
+      Wn = 0.5 * (J + Pack::load_unaligned(&s_.area[start] + k + up));
+      Ws = 0.5 * (Pack::load_unaligned(&s_.area[start] + k - up) + J);
+      c = inv_A = at(row.c);
+      metric_x = 1.0 - at(row.bx) * at(row.bx) * (c * c);
+      metric_y = 1.0 - at(row.by) * at(row.by) * (c * c);
+    }
+    const Pack rho = at(row.rho), h = at(row.h), D = rho * h, half_P = 0.5 * g * at(row.K) * D * h * c;
+    const Pack ax = inv_A * inv_dx, ay = inv_A * inv_dy;
+    const Pack rD = ax * (Ww * at(X.mass - 1) - We * at(X.mass)) + ay * (Ws * at(S.mass) - Wn * at(N.mass));
+    Pack rx = ax * ((Ww * at(X.after - 1) - We * at(X.before)) + half_P * metric_x * (We - Ww)) +
+              ay * (Ws * at(S.tangential) - Wn * at(N.tangential));
+    Pack ry = ay * ((Ws * at(S.after) - Wn * at(N.before)) + half_P * metric_y * (Wn - Ws)) +
+              ax * (Ww * at(X.tangential - 1) - We * at(X.tangential));
     if constexpr (G != Geometry::flat) {
-      rx -=
-          inv_dx * g * metric_x * row.rho[k] * (0.5 * (ex.h_minus[k] + ex.h_plus[k])) * (ex.b_plus[k] - ex.b_minus[k]);
-      ry -=
-          inv_dy * g * metric_y * row.rho[k] * (0.5 * (ey.h_minus[k] + ey.h_plus[k])) * (ey.b_plus[k] - ey.b_minus[k]);
+      rx = rx - 2 * inv_dx * g * metric_x * D * at(ex.b);
+      ry = ry - 2 * inv_dy * g * metric_y * D * at(ey.b);
     }
     if constexpr (G == Geometry::terrain) {
-      const double c2 = cosine[k] * cosine[k], cross = g * D * row.bx[k] * row.by[k] * c2;
-      const double turn = D * w_.bend[k] * cosine[k];
-      rx += cross * row.gy[k] - turn * row.bx[k];
-      ry += cross * row.gx[k] - turn * row.by[k];
+      const Pack cross = g * D * at(row.bx) * at(row.by) * (c * c), turn = D * at(w_.bend) * c;
+      rx = rx + (cross * at(row.gy) - turn * at(row.bx));
+      ry = ry + (cross * at(row.gx) - turn * at(row.by));
     }
-    rx += D * push_x;
-    ry += D * push_y;
-    const bool still = (X.locked[k] * X.locked[k - 1] * N.locked[k] * S.locked[k] != 0);
-    rx = still ? 0 : rx;
-    ry = still ? 0 : ry;
-    const double predicted = D1[k] + dt * rD;
-    w_.D_new[k] = second ? 0.5 * (D0[k] + predicted) : predicted;
-    w_.Msx[k] = second ? Mx0[k] + 0.5 * dt * (Lx[k] + rx) : Mx0[k] + dt * rx;
-    w_.Msy[k] = second ? My0[k] + 0.5 * dt * (Ly[k] + ry) : My0[k] + dt * ry;
-    Lx[k] = rx;
-    Ly[k] = ry;
-    const double east = We * X.speed[k], west = Ww * X.speed[k - 1], north = Wn * N.speed[k], south = Ws * S.speed[k];
-    const double rate = ax * (east > west ? east : west) + ay * (north > south ? north : south);
-    w_.rate[k] = rate > w_.rate[k] ? rate : w_.rate[k];
+    rx = rx + D * push_x;
+    ry = ry + D * push_y;
+    if (row.any_rest) {
+      const Mask still = at(X.locked) * at(X.locked - 1) * at(N.locked) * at(S.locked) > 0.0;
+      rx = select(still, 0.0, rx);
+      ry = select(still, 0.0, ry);
+    }
+    Pack D_new = in(from_.D) + dt * rD, mx = in(start_.Mx), my = in(start_.My);
+    if (second) {
+      D_new = 0.5 * (in(start_.D) + D_new);
+      mx = mx + 0.5 * dt * (at(Lx) + rx);
+      my = my + 0.5 * dt * (at(Ly) + ry);
+    } else {
+      mx = mx + dt * rx;
+      my = my + dt * ry;
+      store_where(cells, rx, Lx + k);
+      store_where(cells, ry, Ly + k);
+    }
+    D_new.store(w_.D_new + k);
+    mx.store(w_.Msx + k);
+    my.store(w_.Msy + k);
+    const Pack rate = ax * max(We * at(X.speed), Ww * at(X.speed - 1)) + ay * max(Wn * at(N.speed), Ws * at(S.speed));
+    const Mask fine = !(D_new < 0.0) & (D_new + (abs(mx) + abs(my)) < huge);
+    rate_ = max(rate_, select(cells, rate, 0.0));
+    wet_ = wet_ + select(cells & (D_new > dry), Pack(1.0), 0.0);
+    if (const std::uint32_t wrong = to_integer(cells & !fine); wrong != 0)
+      result_.bad = static_cast<std::int64_t>(start) + k + std::countr_zero(wrong);
   }
 }
 
 template <Geometry G>
 void Sweep<G>::apply_friction(int j) {
   const CellRow& row = cell(j);
-  const std::size_t at = g_.at(t_.i0, j);
+  const std::size_t at = g_.at(t_.i0 - halo, j);
   Conserved& to = number_ == 1 ? s_.predicted : s_.next;
-  const FrictionArgs args{.n = t_.nx,
+  const FrictionArgs args{.begin = halo,
+                          .end = halo + t_.nx,
                           .stage = number_,
                           .dt = dt_,
-                          .h = row.h + halo,
-                          .u = row.u + halo,
-                          .v = row.v + halo,
-                          .hold = row.hold + halo,
-                          .c = row.c + halo,
-                          .bx = row.bx + halo,
-                          .by = row.by + halo,
-                          .bend = w_.bend + halo,
-                          .D_new = w_.D_new + halo,
-                          .Msx = w_.Msx + halo,
-                          .Msy = w_.Msy + halo,
+                          .h = row.h,
+                          .u = row.u,
+                          .v = row.v,
+                          .hold = row.hold,
+                          .c = row.c,
+                          .bx = row.bx,
+                          .by = row.by,
+                          .bend = w_.bend,
+                          .D_new = w_.D_new,
+                          .Msx = w_.Msx,
+                          .Msy = w_.Msy,
                           .Mx_old = &start_.Mx[at],
                           .My_old = &start_.My[at],
                           .share = &s_.next.D[at],
+                          .D = &to.D[at],
                           .Mx = &to.Mx[at],
                           .My = &to.My[at]};
   s_.kernels.friction(s_.closure, args);
-  std::copy_n(w_.D_new + halo, t_.nx, &to.D[at]);
 }
 
-// Boundary fluxes, and cells that went wrong.
+// Fluxes through the sides of the domain.
 template <Geometry G>
-void Sweep<G>::record(int j) {
-  const double dry = s_.closure.dry_density_depth;
-  for (int k = halo; k < halo + t_.nx; ++k) {
-    w_.bad[k] += w_.D_new[k] >= 0 && std::isfinite(w_.Msx[k]) && std::isfinite(w_.Msy[k]) ? 0 : 1;
-    w_.wet[k] += w_.D_new[k] > dry ? 1 : 0;
-  }
+void Sweep<G>::record_crossings(int j) {
   auto& crossing = s_.crossing[number_ - 1];
   const auto row_at = static_cast<std::size_t>(j), column = static_cast<std::size_t>(t_.i0);
   const auto area = [&](int i, int jj, int i2, int j2) {
@@ -316,18 +335,9 @@ StageResult run_stage(Solver& s, const State& state, int number, double dt) {
     if (!scratch) scratch = std::make_unique<Scratch>();
 #pragma omp for schedule(dynamic, 1)
     for (std::int64_t a = 0; a < tiles; ++a) {
-      const Tile tile = tile_at(s, s.active[static_cast<std::size_t>(a)]);
-      std::fill_n(scratch->rate, row_size, 0.0);
-      std::fill_n(scratch->bad, row_size, 0.0);
-      std::fill_n(scratch->wet, row_size, 0.0);
+      const Tile& tile = s.boxes[static_cast<std::size_t>(s.active[static_cast<std::size_t>(a)])];
       if (!s.setup.grid.two_d()) still_rows(*scratch);
-      Sweep<G>(s, state, number, dt, *scratch, tile).run();
-      StageResult& r = results[static_cast<std::size_t>(a)];
-      for (int k = halo; k < halo + tile.nx; ++k) {
-        r.rate = std::max(r.rate, scratch->rate[k]);
-        r.wet += static_cast<std::int64_t>(scratch->wet[k]);
-        if (scratch->bad[k] > 0) r.bad = static_cast<std::int64_t>(s.setup.grid.at(tile.i0 + k - halo, tile.j0));
-      }
+      results[static_cast<std::size_t>(a)] = Sweep<G>(s, state, number, dt, *scratch, tile).run();
     }
   }
   StageResult all;

@@ -23,8 +23,7 @@ void set_cell(const Solver& s, State& state, int i, int j, double h, double u, d
   state.now.My[c] = D * v;
 }
 
-namespace {
-void close_range(const Solver& s, const State& state, int i, int j, int n, CellRow& row) {
+void view_cells(const Solver& s, const State& state, int i, int j, int n, CellRow& row) {
   const std::size_t at = s.setup.grid.at(i, j);
   if (s.setup.terrain)
     for (int k = 0; k < n; ++k) {
@@ -35,11 +34,10 @@ void close_range(const Solver& s, const State& state, int i, int j, int n, CellR
     }
   s.kernels.closures(s.closure, n, &state.now.D[at], &state.now.Mx[at], &state.now.My[at], row);
 }
-}  // namespace
 
 CellView view_cell(const Solver& s, const State& state, int i, int j) {
   const auto row = std::make_unique<CellRow>();
-  close_range(s, state, i, j, 1, *row);
+  view_cells(s, state, i, j, 1, *row);
   double normal = s.closure.normal, speed2 = row->u[0] * row->u[0] + row->v[0] * row->v[0];
   if (s.setup.terrain) {
     const double w = row->u[0] * row->bx[0] + row->v[0] * row->by[0];
@@ -64,7 +62,7 @@ void view_row(const Solver& s, const State& state, int j, std::vector<double>& h
   const auto row = std::make_unique<CellRow>();
   for (int i = 0; i < g.nx; i += max_tile) {
     const int n = std::min(max_tile, g.nx - i);
-    close_range(s, state, i, j, n, *row);
+    view_cells(s, state, i, j, n, *row);
     for (int k = 0; k < n; ++k) {
       const auto to = static_cast<std::size_t>(i + k);
       h[to] = row->h[k];
@@ -96,10 +94,16 @@ double mass_crossed(const Solver&, const State& state) {
 }
 
 bool at_rest(const Solver& s, const State& state) {
-  const Grid& g = s.setup.grid;
-  for (int j = 0; j < g.ny; ++j)
-    for (int i = 0; i < g.nx; ++i)
-      if (state.now.Mx[g.at(i, j)] != 0 || state.now.My[g.at(i, j)] != 0) return false;
+  for (const int tile : s.active) {  // elsewhere it is dry
+    const Tile& box = s.boxes[static_cast<std::size_t>(tile)];
+    for (int j = box.j0; j < box.j0 + box.ny; ++j) {
+      const std::size_t at = s.setup.grid.at(box.i0, j);
+      const auto moving = [](double m) { return m != 0; };
+      if (std::any_of(&state.now.Mx[at], &state.now.Mx[at] + box.nx, moving) ||
+          std::any_of(&state.now.My[at], &state.now.My[at] + box.nx, moving))
+        return false;
+    }
+  }
   return true;
 }
 

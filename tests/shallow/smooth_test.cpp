@@ -130,7 +130,7 @@ TEST(Problem07, UniformLayerUnderTheFlowRule) {
     ASSERT_NEAR(run.state.time, t_end, 1e-9 * t_end);
     errors.push_back(std::abs(run.profile().u[0] / std::sqrt(gc * h) - F_end));
   }
-  tabulate("7 uniform layer", "error of F, 80 steps", errors[2], "< 1e-4");
+  tabulate("7 uniform layer", "error of F at 80 steps", errors[2], "< 1e-4");
   tabulate("7 uniform layer", "order in dt", order(errors[1], errors[2]), ">= 1.9");
   EXPECT_LT(errors[2], 1e-4);
   EXPECT_GE(order(errors[1], errors[2]), 1.9);

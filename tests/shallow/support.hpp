@@ -1,5 +1,7 @@
 // Small helpers of the shallow-layer tests: set-ups in one line, error norms, observed orders.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -104,6 +106,7 @@ inline double order(double coarse, double fine, double ratio = 2) { return std::
 // One line of the verification table (validation/shallow/): printed when BAGNOLD_TABLE names a file.
 inline void tabulate(const std::string& problem, const std::string& quantity, double value,
                      const std::string& criterion) {
+  EXPECT_EQ((problem + quantity + criterion).find(','), std::string::npos) << "a comma ends a column";
   if (const char* name = std::getenv("BAGNOLD_TABLE"))
     if (std::FILE* f = std::fopen(name, "a")) {
       std::fprintf(f, "%s,%s,%.4g,%s\n", problem.c_str(), quantity.c_str(), value, criterion.c_str());

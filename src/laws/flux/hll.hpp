@@ -1,47 +1,53 @@
 // The two-wave flux of Harten, Lax & van Leer for depth-averaged flow with shape factor and stress ratio.
 #pragma once
-#include <cmath>
+#include "core/numeric.hpp"
 
 namespace bagnold::laws {
 
-// One side of a face. h: thickness, un and ut: depth-averaged velocity normal and tangential to the face.
+// One side of a face. h: thickness, un and ut: depth-averaged velocity normal and tangential to the face. N: double, or a
+// pack of numbers.
+template <class N>
 struct ShallowSide {
-  double h, un, ut;
+  N h, un, ut;
 };
 // Closures at the face, common to both sides. gK = K g cos(theta); slope = h d(alpha)/dh, not negative.
+template <class N>
 struct ShallowFace {
-  double rho, alpha, gK, slope;
+  N rho, alpha, gK, slope;
 };
+template <class N>
 struct ShallowFlux {
-  double mass, normal, tangential;  // of rho h, of rho h un (pressure included), of rho h ut
-  double speed;                     // largest |characteristic speed|
+  N mass, normal, tangential;  // of rho h, of rho h un (pressure included), of rho h ut
+  N speed;                     // largest |characteristic speed|
 };
 
 // Characteristics of eq. 34 at constant rho, K: alpha u +- sqrt((alpha (alpha - 1) + h alpha') u^2 + K g cos(theta) h).
-inline double characteristic_width(const ShallowFace& f, double h, double u) {
-  return std::sqrt((f.alpha * (f.alpha - 1) + f.slope) * (u * u) + f.gK * h);
+template <class N>
+N characteristic_width(const ShallowFace<N>& f, const N& h, const N& u) {
+  return ieee_sqrt((f.alpha * (f.alpha - 1.0) + f.slope) * (u * u) + f.gK * h);
 }
 
 // Next to a dry state the front runs at alpha u + 2 sqrt(K g cos(theta) h) (Toro 2001, section 6.3). The tangential
 // momentum is carried by the mass flux (contact wave at alpha u). Commutes with exchanging the sides bit for bit.
-inline ShallowFlux hll(const ShallowFace& f, const ShallowSide& l, const ShallowSide& r) {
-  const double wl = characteristic_width(f, l.h, l.un), wr = characteristic_width(f, r.h, r.un);
-  const double al = f.alpha * l.un, ar = f.alpha * r.un;
-  const bool dry_l = !(l.h > 0), dry_r = !(r.h > 0);
-  double sl = al - wl < ar - wr ? al - wl : ar - wr, sr = al + wl > ar + wr ? al + wl : ar + wr;
-  sr = dry_r ? al + 2 * wl : sr;
-  sl = dry_r ? al - wl : sl;
-  sl = dry_l ? ar - 2 * wr : sl;
-  sr = dry_l ? ar + wr : sr;
-  sl = sl < 0 ? sl : 0;
-  sr = sr > 0 ? sr : 0;
-  const double span = sr - sl, inv = span > 0 ? 1 / span : 0;
-  const double dl = f.rho * l.h, dr = f.rho * r.h, ml = dl * l.un, mr = dr * r.un;
-  const double fl = al * ml + 0.5 * f.gK * dl * l.h, fr = ar * mr + 0.5 * f.gK * dr * r.h;
-  const double mass = ((sr * ml - sl * mr) + sl * sr * (dr - dl)) * inv;
-  const double normal = ((sr * fl - sl * fr) + sl * sr * (mr - ml)) * inv;
-  const double carried = mass > 0 ? l.ut : r.ut;
-  return {mass, normal, f.alpha * mass * carried, sr > -sl ? sr : -sl};
+template <class N>
+[[gnu::always_inline]] inline ShallowFlux<N> hll(const ShallowFace<N>& f, const ShallowSide<N>& l,
+                                                 const ShallowSide<N>& r) {
+  const N zero = 0.0;
+  const N wl = characteristic_width(f, l.h, l.un), wr = characteristic_width(f, r.h, r.un);
+  const N al = f.alpha * l.un, ar = f.alpha * r.un;
+  const auto wet_l = l.h > zero, wet_r = r.h > zero;
+  N sl = min(al - wl, ar - wr), sr = max(al + wl, ar + wr);
+  sr = select(wet_r, sr, al + 2.0 * wl);
+  sl = select(wet_r, sl, al - wl);
+  sl = min(select(wet_l, sl, ar - 2.0 * wr), zero);
+  sr = max(select(wet_l, sr, ar + wr), zero);
+  const N span = sr - sl, inv = select(span > zero, 1.0 / span, zero);
+  const N dl = f.rho * l.h, dr = f.rho * r.h, ml = dl * l.un, mr = dr * r.un;
+  const N fl = al * ml + 0.5 * f.gK * dl * l.h, fr = ar * mr + 0.5 * f.gK * dr * r.h, both = sl * sr;
+  const N mass = ((sr * ml - sl * mr) + both * (dr - dl)) * inv;
+  const N normal = ((sr * fl - sl * fr) + both * (mr - ml)) * inv;
+  const N carried = select(mass > zero, l.ut, r.ut);
+  return {mass, normal, f.alpha * mass * carried, max(sr, zero - sl)};
 }
 
 }  // namespace bagnold::laws

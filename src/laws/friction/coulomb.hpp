@@ -6,13 +6,16 @@
 #include <tuple>
 
 #include "core/fields.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws {
 
-// Friction and its derivative with respect to the Froude number.
-struct MuAndSlope {
-  double mu, slope;
+// Friction and its derivative with respect to the Froude number. N: double, or a pack of numbers, here and in every law.
+template <class N>
+struct MuAndSlopeOf {
+  N mu, slope;
 };
+using MuAndSlope = MuAndSlopeOf<double>;
 
 inline double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180); }
 
@@ -30,8 +33,14 @@ struct Coulomb {
   // The law with its tangents taken, for loops. h: thickness (any unit of length), F = |u|/sqrt(g h cos theta).
   struct Prepared {
     double tan_delta;
-    double mu(double /*h*/, double /*F*/) const { return tan_delta; }
-    MuAndSlope mu_and_slope(double /*h*/, double /*F*/) const { return {tan_delta, 0}; }
+    template <class N>
+    N mu(const N& /*h*/, const N& /*F*/) const {
+      return tan_delta;
+    }
+    template <class N>
+    MuAndSlopeOf<N> mu_and_slope(const N& /*h*/, const N& /*F*/) const {
+      return {tan_delta, 0.0};
+    }
   };
   Prepared prepared(double /*g*/) const { return {tan_deg(delta_deg)}; }
 };

@@ -1,5 +1,6 @@
 // Friction from the flow rule with the exponential stopping height (eqs 38, 39).
 #pragma once
+#include "core/octet.hpp"
 #include "laws/friction/coulomb.hpp"
 
 namespace bagnold::laws {
@@ -24,14 +25,15 @@ struct ExponentialFriction {
 
   struct Prepared {
     double mu1, delta_mu, a_per_h, gamma;
-    double excess(double F) const {
-      const double y = F + gamma;
-      return y > 1e-12 ? y : 1e-12;
+    template <class N>
+    [[gnu::always_inline]] N mu(const N& h, const N& F) const {
+      return mu_and_slope(h, F).mu;
     }
-    double mu(double h, double F) const { return mu1 + delta_mu * std::exp(-a_per_h * h / excess(F)); }
-    MuAndSlope mu_and_slope(double h, double F) const {
-      const double y = excess(F), a = a_per_h * h, part = delta_mu * std::exp(-a / y);
-      return {mu1 + part, part * a / (y * y)};
+    template <class N>
+    [[gnu::always_inline]] MuAndSlopeOf<N> mu_and_slope(const N& h, const N& F) const {
+      const N inverse = 1.0 / max(F + gamma, N(1e-12)), x = a_per_h * h * inverse,
+              part = delta_mu * exp_negative(N(0.0 - x));
+      return {mu1 + part, part * x * inverse};
     }
   };
   Prepared prepared(double /*g*/) const {

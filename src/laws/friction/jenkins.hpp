@@ -1,6 +1,5 @@
 // Friction from Jenkins' flow rule F = beta (h/h_stop) tan^2(theta)/tan^2(delta1) - gamma (eq. 40).
 #pragma once
-#include "core/unrolled.hpp"
 #include "laws/friction/coulomb.hpp"
 
 namespace bagnold::laws {
@@ -26,22 +25,28 @@ struct Jenkins {
   // from mu2 falls monotonically on the root; eight steps reach round-off for any a, y.
   struct Prepared {
     double mu1, mu2, a_per_h, gamma;
-    double excess(double F) const {
-      const double y = F + gamma;
-      return 0.5 * (y + std::abs(y));
-    }  // max(y, 0)
     static constexpr int newton_steps = 8;
-    [[gnu::always_inline]] double mu(double h, double F) const {
-      const double a = a_per_h * h + 1e-300, b = excess(F) * mu1 * mu1;
-      double m = mu2;
-      unrolled<newton_steps>([&](int) __attribute__((always_inline)) {
-        m -= (a * (m - mu1) * m * m - b * (mu2 - m)) / (a * m * (3 * m - 2 * mu1) + b);
-      });
+    template <class N>
+    struct Balance {
+      N a, b;
+    };
+    template <class N>
+    Balance<N> balance(const N& h, const N& F) const {
+      return {a_per_h * h + 1e-300, max(F + gamma, N(0.0)) * (mu1 * mu1)};
+    }
+    template <class N>
+    [[gnu::always_inline]] N mu(const N& h, const N& F) const {
+      const auto [a, b] = balance(h, F);
+      N m = mu2;
+      for (int k = 0; k < newton_steps; ++k)
+        m = m - (a * (m - mu1) * m * m - b * (mu2 - m)) / (a * m * (3.0 * m - 2 * mu1) + b);
       return m;
     }
-    MuAndSlope mu_and_slope(double h, double F) const {
-      const double a = a_per_h * h + 1e-300, b = excess(F) * mu1 * mu1, m = mu(h, F);
-      return {m, mu1 * mu1 * (mu2 - m) / (a * m * (3 * m - 2 * mu1) + b)};
+    template <class N>
+    MuAndSlopeOf<N> mu_and_slope(const N& h, const N& F) const {
+      const auto [a, b] = balance(h, F);
+      const N m = mu(h, F);
+      return {m, mu1 * mu1 * (mu2 - m) / (a * m * (3.0 * m - 2 * mu1) + b)};
     }
   };
   Prepared prepared(double /*g*/) const { return {tan_deg(delta1_deg), tan_deg(delta2_deg), beta / (A * d), gamma}; }

@@ -21,9 +21,13 @@ struct MuOfI {
 
   struct Prepared {
     double mu_s, delta_mu, h_scale;  // I0/I = h/(h_scale F)
-    [[gnu::always_inline]] double mu(double h, double F) const { return mu_and_slope(h, F).mu; }
-    [[gnu::always_inline]] MuAndSlope mu_and_slope(double h, double F) const {
-      const double y = h_scale * F, q = 1 / (y + h + 1e-150);
+    template <class N>
+    [[gnu::always_inline]] N mu(const N& h, const N& F) const {
+      return mu_and_slope(h, F).mu;
+    }
+    template <class N>
+    [[gnu::always_inline]] MuAndSlopeOf<N> mu_and_slope(const N& h, const N& F) const {
+      const N y = h_scale * F, q = 1.0 / (y + h + 1e-150);
       return {mu_s + delta_mu * (y * q), delta_mu * h_scale * (h * q) * q};
     }
   };

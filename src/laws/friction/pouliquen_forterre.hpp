@@ -24,13 +24,14 @@ struct PouliquenForterre {
   // The pole of eq. 37 at F = -gamma (gamma < 0) is removed: below it the friction is that of delta1.
   struct Prepared {
     double mu1, delta_mu, a_per_h, gamma;  // a = beta h/(A d)
-    double excess(double F) const {
-      const double y = F + gamma;
-      return 0.5 * (y + std::abs(y));
-    }  // max(y, 0)
-    [[gnu::always_inline]] double mu(double h, double F) const { return mu_and_slope(h, F).mu; }
-    [[gnu::always_inline]] MuAndSlope mu_and_slope(double h, double F) const {
-      const double y = excess(F), a = a_per_h * h, q = 1 / (y + a + 1e-150);
+    template <class N>
+    [[gnu::always_inline]] N mu(const N& h, const N& F) const {
+      const N y = max(F + gamma, N(0.0));
+      return mu1 + delta_mu * y / (y + a_per_h * h + 1e-150);
+    }
+    template <class N>
+    [[gnu::always_inline]] MuAndSlopeOf<N> mu_and_slope(const N& h, const N& F) const {
+      const N y = max(F + gamma, N(0.0)), a = a_per_h * h, q = 1.0 / (y + a + 1e-150);
       return {mu1 + delta_mu * (y * q), delta_mu * (a * q) * q};
     }
   };

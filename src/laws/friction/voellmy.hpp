@@ -18,8 +18,14 @@ struct Voellmy {
 
   struct Prepared {
     double mu0, g_per_xi;
-    double mu(double /*h*/, double F) const { return mu0 + g_per_xi * F * F; }
-    MuAndSlope mu_and_slope(double h, double F) const { return {mu(h, F), 2 * g_per_xi * F}; }
+    template <class N>
+    N mu(const N& /*h*/, const N& F) const {
+      return mu0 + g_per_xi * F * F;
+    }
+    template <class N>
+    MuAndSlopeOf<N> mu_and_slope(const N& h, const N& F) const {
+      return {mu(h, F), 2 * g_per_xi * F};
+    }
   };
   Prepared prepared(double g) const { return {mu0, g / xi}; }
 };

@@ -35,28 +35,27 @@ struct StrainModelShapeFactor {
     const double mu1 = tan_deg(delta1_deg), mu2 = tan_deg(delta2_deg);
     return prepared_factor(h, mu, mu1, mu2);
   }
-  double prepared_factor(double h, double mu, double mu1, double mu2) const {
-    const double above = mu - mu1 > 1e-6 ? mu - mu1 : 1e-6, below = mu2 - mu > 0 ? mu2 - mu : 0;
-    const double h_stop = A * d * below / above, h_safe = h > 1e-6 * d ? h : 1e-6 * d;
-    double b = base_layer * d * h_stop / (h_safe * h_safe);
-    b = b < 1 ? b : 1;
-    double t = 1 - surface_layer * d / h_safe;
-    t = t > b ? t : b;
-    const double s_b = std::sqrt(1 - b), s_t = std::sqrt(1 - t), third = 1.0 / 3;
-    const double q = 1 - b, r = 1 - t;  // depths below the surface of the two interfaces
-    const double u_b = 2 * third * s_b * b;
-    const double c = u_b + 2 * third * q * s_b;  // mid layer: u = c - (2/3) (1-z)^(3/2)
-    const double u_t = c - 2 * third * r * s_t;
+  template <class N>
+  [[gnu::always_inline]] N prepared_factor(const N& h, const N& mu, double mu1, double mu2) const {
+    const N above = max(mu - mu1, N(1e-6)), below = max(mu2 - mu, N(0.0)), inverse_h = 1.0 / max(h, N(1e-6 * d));
+    const N b = min(base_layer * d * A * d * below * inverse_h * inverse_h / above, N(1.0));
+    const N t = max(1.0 - surface_layer * d * inverse_h, b);
+    constexpr double third = 1.0 / 3;
+    const N q = 1.0 - b, r = 1.0 - t;  // depths below the surface of the two interfaces
+    const N s_b = sqrt(q), s_t = sqrt(r);
+    const N u_b = 2 * third * s_b * b;
+    const N c = u_b + 2 * third * q * s_b;  // mid layer: u = c - (2/3) (1-z)^(3/2)
+    const N u_t = c - 2 * third * r * s_t;
     // base: integral of (z/3 + z^2/(3b)) is b^2 (1/6 + 1/9); of its square b^3 (1/27 + 1/18 + 1/45)
-    const double base1 = s_b * b * b * (5.0 / 18), base2 = q * b * b * b * (31.0 / 270);
-    const double p52 = 0.4 * (q * q * s_b - r * r * s_t), p4 = 0.25 * (q * q * q * q - r * r * r * r);
-    const double mid1 = c * (t - b) - 2 * third * p52;
-    const double mid2 = c * c * (t - b) - 4 * third * c * p52 + 4 * third * third * p4;
-    const double top1 = u_t * r + 0.5 * s_t * r * r, top2 = u_t * u_t * r + u_t * s_t * r * r + third * r * r * r * r;
-    const double mean = base1 + mid1 + top1, square = base2 + mid2 + top2;
+    const N base1 = s_b * b * b * (5.0 / 18), base2 = q * b * b * b * (31.0 / 270);
+    const N p52 = 0.4 * (q * q * s_b - r * r * s_t), p4 = 0.25 * (q * q * q * q - r * r * r * r);
+    const N mid1 = c * (t - b) - 2 * third * p52;
+    const N mid2 = c * c * (t - b) - 4 * third * c * p52 + 4 * third * third * p4;
+    const N top1 = u_t * r + 0.5 * s_t * r * r, top2 = u_t * u_t * r + u_t * s_t * r * r + third * r * r * r * r;
+    const N mean = base1 + mid1 + top1, square = base2 + mid2 + top2;
     // A layer that is all base layer (b = 1) has no Bagnold strain left; its limit is the base profile itself.
     const double plain = (31.0 / 270) / ((5.0 / 18) * (5.0 / 18));
-    return mean > 1e-12 ? square / (mean * mean) : plain;
+    return select(mean > N(1e-12), square / (mean * mean), N(plain));
   }
 };
 
