@@ -11,7 +11,7 @@ namespace {
 using namespace bagnold;
 using namespace bagnold::shallow;
 
-Definition field(int n, bool measured) {
+Definition field(int n, bool measured, bool terrain) {
   Definition s;
   s.grid = {.nx = n, .ny = n, .dx = 5, .dy = 5};
   const double theta = 26 * std::numbers::pi / 180;
@@ -24,13 +24,21 @@ Definition field(int n, bool measured) {
   }
   s.scheme.tip_depth = 3;
   for (Boundary& b : s.boundary) b.kind = BoundaryKind::periodic;
+  if (terrain) {
+    s.gravity = {.normal = 1, .g = 1};
+    s.terrain = true;
+    s.bed.assign(static_cast<std::size_t>(s.grid.padded()), 0.0);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) s.bed[s.grid.at(i, j)] = 8 * std::sin(0.1 * i) * std::cos(0.15 * j);
+    for (Boundary& b : s.boundary) b.kind = BoundaryKind::wall;
+  }
   return s;
 }
 
-void cell_updates(benchmark::State& bench, bool measured, double wet_part) {
-  set_threads(1);
+void cell_updates(benchmark::State& bench, bool measured, double wet_part, int threads = 1, bool terrain = false) {
+  set_threads(threads);
   const int n = static_cast<int>(bench.range(0));
-  Solver solver = make_solver(field(n, measured));
+  Solver solver = make_solver(field(n, measured, terrain));
   State state = empty_state(solver);
   for (int j = 0; j < n * wet_part; ++j)
     for (int i = 0; i < n; ++i) set_cell(solver, state, i, j, 10 + std::sin(0.05 * i) * std::cos(0.07 * j), 1, 0.2);
@@ -43,9 +51,13 @@ void cell_updates(benchmark::State& bench, bool measured, double wet_part) {
 void constant_closures(benchmark::State& s) { cell_updates(s, false, 1); }
 void all_closures(benchmark::State& s) { cell_updates(s, true, 1); }
 void constant_closures_one_tenth_wet(benchmark::State& s) { cell_updates(s, false, 0.1); }
+void constant_closures_on_terrain(benchmark::State& s) { cell_updates(s, false, 1, 1, true); }
+void constant_closures_two_threads(benchmark::State& s) { cell_updates(s, false, 1, 2); }
 
 BENCHMARK(constant_closures)->Arg(240)->Arg(960)->Unit(benchmark::kMillisecond);
 BENCHMARK(all_closures)->Arg(240)->Unit(benchmark::kMillisecond);
 BENCHMARK(constant_closures_one_tenth_wet)->Arg(960)->Unit(benchmark::kMillisecond);
+BENCHMARK(constant_closures_on_terrain)->Arg(240)->Unit(benchmark::kMillisecond);
+BENCHMARK(constant_closures_two_threads)->Arg(960)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

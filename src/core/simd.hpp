@@ -101,11 +101,6 @@ struct Pack {
     return a;
   }
   void store(double* p) const { *reinterpret_cast<Register*>(p) = v; }
-  static Pack load_unaligned(const double* p) {
-    Pack a;
-    std::memcpy(&a.v, p, sizeof a.v);
-    return a;
-  }
   void store_unaligned(double* p) const { std::memcpy(p, &v, sizeof v); }
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = a; }

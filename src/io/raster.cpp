@@ -90,7 +90,9 @@ void write_raster(const std::filesystem::path& path, const Raster& r) {
   char** options = nullptr;
   options =
       ascii ? CSLSetNameValue(options, "DECIMAL_PRECISION", "6") : CSLSetNameValue(options, "COMPRESS", "DEFLATE");
+  CPLPushErrorHandler(CPLQuietErrorHandler);
   const Dataset written(driver->CreateCopy(path.c_str(), data.get(), FALSE, options, nullptr, nullptr));
+  CPLPopErrorHandler();
   CSLDestroy(options);
   if (!written) throw IoError(fmt::format("{}: {}", path.string(), CPLGetLastErrorMsg()));
 }

@@ -143,7 +143,9 @@ TEST(Valley, EveryFormatOfTerrainAndReleaseGivesTheSameRun) {
       ASSERT_EQ(o.exit_code, 0) << dem << release << o.err;
       const std::string series = read_text(scratch / "out" / "series.csv");
       if (first.empty()) first = series;
-      if (std::string(dem) == "dem.tif") EXPECT_TRUE(series == first) << release;  // .asc has six decimals
+      if (std::string(dem) == "dem.tif") {  // .asc has six decimals
+        EXPECT_TRUE(series == first) << release;
+      }
       const auto summary = io::read_json(scratch / "out" / "summary.json");
       EXPECT_LT(std::abs(summary["mass_error_rel"].get<double>()), 1e-12);
       EXPECT_GT(summary["max_speed"].get<double>(), 5);
@@ -172,8 +174,9 @@ TEST(Valley, MapsLieWhereTheTerrainLies) {
                    speed = io::read_raster(scratch / "out" / "max_speed.tif"),
                    pressure = io::read_raster(scratch / "out" / "max_pressure.tif");
   const auto at = [](const io::Raster& r, int i, int j) { return r.values[static_cast<std::size_t>(j * nx + i)]; };
-  EXPECT_EQ(at(depth, 10, 10), 3);  // where it was released, south-west of the middle: rows are not upside down
-  EXPECT_EQ(at(arrival, 10, 10), 0);
+  EXPECT_NEAR(at(depth, 10, 10), 3, 0.3);
+  EXPECT_EQ(at(arrival, 10, 8), 0);   // where it was released; rows are not upside down:
+  EXPECT_NE(at(arrival, 10, 15), 0);  // its mirror image was free
   EXPECT_TRUE(std::isnan(at(arrival, 2, 20)));
   EXPECT_GT(at(arrival, 16, 11), 0);                                                           // downhill, later
   EXPECT_LE(at(pressure, 16, 11), 0.5 * at(speed, 16, 11) * at(speed, 16, 11) * (1 + 1e-12));  // rho u^2, rho = phi
@@ -255,7 +258,7 @@ TEST(ValleyErrors, ReleaseOutsideTheTerrain) {
   const Scratch scratch;
   make_valley(scratch);
   write_text(scratch / "release.geojson", geojson(150, 260));
-  expect_refusal(scratch, valley_case("dem.tif", square), {"lies outside the terrain", "500260"});
+  expect_refusal(scratch, valley_case("dem.tif", square), {"lies outside the terrain", "5100150"});
   write_shapefile(scratch / "release", -30, 20, 3);
   expect_refusal(scratch, valley_case("dem.asc", "shape = \"polygons\"\npolygons = \"release.shp\"\n"),
                  {"lies outside the terrain", "499970"});

@@ -67,7 +67,8 @@ TEST(Cases, FrontTomlAdvancesWithTheFlowBehindIt) {
   const auto &t = r.series["t"], &front = r.series["front"];
   std::size_t late = 0;
   while (t[late] < 500) ++late;
-  EXPECT_NEAR((front.back() - front[late]) / (t.back() - t[late]), u, 0.1 * u);
+  // one cell in 267 is 0.4 %
+  EXPECT_NEAR((front.back() - front[late]) / (t.back() - t[late]), u, 0.015 * u);
 }
 
 TEST(Cases, ContractionTomlDeepensTowardsTheNarrows) {

@@ -110,10 +110,11 @@ TEST(Conservation, MassToRoundOffThroughWallsAndOutflow) {
     run.to(25);
     const double balance = total_mass(run.solver, run.state) + mass_crossed(run.solver, run.state);
     EXPECT_NEAR(balance / start, 1, 1e-13);
-    if (kind == BoundaryKind::outflow)
+    if (kind == BoundaryKind::outflow) {
       EXPECT_GT(mass_crossed(run.solver, run.state) / start, 0.05);
-    else if (kind == BoundaryKind::wall)
+    } else if (kind == BoundaryKind::wall) {
       EXPECT_EQ(mass_crossed(run.solver, run.state), 0);
+    }
     for (double D : run.state.now.D) ASSERT_GE(D, 0);
   }
 }
