@@ -97,7 +97,7 @@ void expect_second_order(const char* name, Shape shape, bool two_d, double delta
   const int n = two_d ? 32 : 100;
   const double inner = 1.2, e1 = film_error(shape, n, two_d, delta_deg, inner),
                e4 = film_error(shape, 4 * n, two_d, delta_deg, inner);
-  tabulate(name, "error of velocity, fine grid", e4, "< 2e-3");
+  tabulate(name, "error of velocity on the fine grid", e4, "< 2e-3");
   tabulate(name, "order", order(e1, e4, 4), ">= 1.8");
   EXPECT_LT(e4, 2e-3) << name;
   EXPECT_GE(order(e1, e4, 4), 1.8) << name << ' ' << e1 << ' ' << e4;
