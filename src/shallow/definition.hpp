@@ -8,16 +8,17 @@
 
 namespace bagnold::shallow {
 
-constexpr int halo = 2;  // ghost cells on every side; MUSCL needs two
+constexpr int halo = 2;   // ghost cells on every side; MUSCL needs two
+constexpr int slack = 8;  // entries after the last cell: kernels read eight at a time
 
 // Cells of dx by dy; the first cell's lower left corner is (x0, y0). ny = 1 is the one-dimensional model. Arrays over
-// the grid are padded by the halo, row by row.
+// the grid are padded by the halo, row by row, and by the slack at their end.
 struct Grid {
   int nx = 1, ny = 1;
   double x0 = 0, y0 = 0, dx = 1, dy = 1;
   bool two_d() const { return ny > 1; }
   std::int64_t stride() const { return nx + 2 * halo; }
-  std::int64_t padded() const { return stride() * (ny + 2 * halo); }
+  std::int64_t padded() const { return stride() * (ny + 2 * halo) + slack; }
   std::size_t at(int i, int j) const { return static_cast<std::size_t>((j + halo) * stride() + i + halo); }
   double x(int i) const { return x0 + (i + 0.5) * dx; }
   double y(int j) const { return y0 + (j + 0.5) * dy; }
