@@ -107,7 +107,8 @@ closure::ClosureSet read_closure(const Case& input) {
   const double grain_density = s.get<double>("grain_density", 1.0, positive(), "mass/length^3");
   closure::ClosureSet set;
   if (name.ends_with(".toml")) {
-    const std::filesystem::path path = std::filesystem::path(input.directory()) / name;
+    const auto path = std::filesystem::absolute(std::filesystem::path(input.directory()) / name).lexically_normal();
+    s.resolve("set", path.string());
     set = from_file(path.string(), s.get<std::string>("lambda", "1"), d, grain_density);
   } else if (name != "custom") {
     const auto known = closure::builtin(name, d, grain_density);

@@ -11,8 +11,13 @@ namespace {
 using config::Case;
 using config::Section;
 
+// The resolved case names the file from the root, so that it can be run again and resumed from anywhere.
 std::filesystem::path file_of(const Case& input, const Section& section, const std::string& key) {
-  return std::filesystem::path(input.directory()) / section.get<std::string>(key, std::nullopt);
+  const auto path =
+      std::filesystem::absolute(std::filesystem::path(input.directory()) / section.get<std::string>(key, std::nullopt))
+          .lexically_normal();
+  section.resolve(key, path.string());
+  return path;
 }
 }  // namespace
 

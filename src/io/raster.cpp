@@ -24,7 +24,10 @@ Dataset open(const std::filesystem::path& path, unsigned kind) {
   CPLPushErrorHandler(CPLQuietErrorHandler);
   Dataset data(static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), kind | GDAL_OF_READONLY, nullptr, nullptr, nullptr)));
   CPLPopErrorHandler();
-  if (!data) throw IoError(fmt::format("{}: {}", path.string(), CPLGetLastErrorMsg()));
+  if (!data) {
+    const std::string reason = CPLGetLastErrorMsg();
+    throw IoError(fmt::format("{}: {}", path.string(), reason.empty() ? "cannot be read" : reason));
+  }
   return data;
 }
 

@@ -188,6 +188,18 @@ TEST(Valley, MapsLieWhereTheTerrainLies) {
   EXPECT_GT(series["section0_discharge"].back(), 1);
 }
 
+TEST(Valley, TheResolvedCaseRunsAgainAndResumesFromItsOwnFolder) {
+  const Scratch scratch;
+  make_valley(scratch);
+  write_text(scratch / "c.toml", valley_case("dem.tif", square));
+  ASSERT_EQ(bagnold(scratch, "run c.toml -o a --quiet").exit_code, 0);
+  const Outcome again = bagnold(scratch, "run a/case.toml -o b --quiet");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(read_text(scratch / "a" / "series.csv") == read_text(scratch / "b" / "series.csv"));
+  const Outcome resumed = bagnold(scratch, "resume a --quiet");
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+}
+
 // Thickness is normal to the ground: a vertical one is cos(slope) of it thick, and a column keeps its volume.
 TEST(Valley, VerticalAndNormalReleases) {
   const Scratch scratch;
