@@ -17,6 +17,7 @@ inline double sqrt(double a) { return std::sqrt(a); }
 inline double ieee_sqrt(double a) { return std::sqrt(a); }
 inline double rsqrt(double a) { return 1 / std::sqrt(a); }
 inline double power(double a, double exponent) { return std::pow(a, exponent); }
+constexpr double reciprocal(double a) { return 1 / a; }
 inline double abs(double a) { return std::fabs(a); }
 constexpr bool any(bool mask) { return mask; }
 // a b + c, fused where the build has the instruction.

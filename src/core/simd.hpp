@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/octet.hpp"
+#include "core/exponential.hpp"
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -44,7 +44,12 @@ inline Register inverse_root(Register a) {
   // (The zero-masking forms, with every lane kept, are the plain instructions without a false warning.)
   const Register y = _mm512_maskz_rsqrt14_pd(0xff, a), e = 1.0 - (a * y) * y;
   const Register series = (0.3125 * e + 0.375) * e + 0.5;
-  return (series * e) * y + y;
+  return series * (e * y) + y;
+}
+// 1/(1 - e) = (1 + e) (1 + e^2) + O(e^4), with e = 1 - a y < 2^-13 for the 14-bit estimate y.
+inline Register reciprocal(Register a) {
+  const Register y = _mm512_maskz_rcp14_pd(0xff, a), e = 1.0 - a * y, z = y * e + y;
+  return z * (e * e) + z;
 }
 // One Newton step on a y removes the last rounding error; tiny keeps 0 * infinity out.
 inline Register root(Register a) {
@@ -75,6 +80,7 @@ inline Register root(Register a) {
   return a;
 }
 inline Register inverse_root(Register a) { return 1.0 / root(a); }
+inline Register reciprocal(Register a) { return 1.0 / a; }
 #endif
 
 }  // namespace detail
@@ -92,7 +98,7 @@ struct Pack {
   Register v;
 
   Pack() = default;
-  Pack(double a) : v(Register{} + a) {}  // every lane
+  Pack(double a) : v{a, a, a, a, a, a, a, a} {}
   explicit Pack(Register r) : v(r) {}
   static Pack load(const double* p) { return Pack(*reinterpret_cast<const Register*>(p)); }  // aligned to 64 bytes
   static Pack load_unaligned(const double* p) {
@@ -109,6 +115,10 @@ struct Pack {
   friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.v - b.v); }
   friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.v * b.v); }
   friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
+  friend Pack operator-(const Pack& a) { return Pack(-a.v); }
+  Pack& operator+=(const Pack& a) { return v += a.v, *this; }
+  Pack& operator-=(const Pack& a) { return v -= a.v, *this; }
+  Pack& operator*=(const Pack& a) { return v *= a.v, *this; }
   friend Pack min(const Pack& a, const Pack& b) { return Pack(detail::least(a.v, b.v)); }
   friend Pack max(const Pack& a, const Pack& b) { return Pack(detail::most(a.v, b.v)); }
   friend Pack abs(const Pack& a) { return Pack(detail::magnitude(a.v)); }
@@ -126,6 +136,7 @@ struct Pack {
     for (int k = 0; k < lanes; ++k) a.v[k] = std::pow(a.v[k], exponent);
     return a;
   }
+  friend Pack reciprocal(const Pack& a) { return Pack(detail::reciprocal(a.v)); }
   friend Mask operator<(const Pack& a, const Pack& b) { return {detail::less(a.v, b.v)}; }
   friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
   // a b + c, fused where the build has the instruction: for functions of one number, not for sums that must be symmetric.
@@ -142,11 +153,6 @@ struct Pack {
   }
   friend Pack select(const Mask& m, const Pack& a, const Pack& b) { return Pack(detail::blend(m.m, a.v, b.v)); }
 };
-
-// exp(a) for a <= 0, as for one number (core/octet.hpp).
-inline Pack exp_negative(const Pack& a) {
-  return Pack(static_cast<Register>(bagnold::exp_negative<Octet>(static_cast<Octet>(a.v))));
-}
 
 // Bit k is lane k.
 inline std::uint32_t to_integer(const Mask& m) { return detail::to_integer(m.m); }
@@ -186,6 +192,32 @@ inline int compress(std::uint32_t bits, const std::uint32_t* in, std::uint32_t* 
   return __builtin_popcount(bits);
 }
 
+// Sum of the lanes, always in the same order.
+inline double lane_sum(const Pack& a) { return ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7])); }
+
+namespace detail {
+
+// Halves of the 2 x 2 and of the 4 x 4 transpositions: numbers 0, 2, 4, 6 of a and b in turn, numbers 1, 3, 5, 7; pairs 0
+// and 2 of both, pairs 1 and 3.
+inline Register evens(Register a, Register b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
+inline Register odds(Register a, Register b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
+inline Register even_pairs(Register a, Register b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); }
+inline Register odd_pairs(Register a, Register b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); }
+
+}  // namespace detail
+
+// The lane sums of several packs, four at a time, always in the same order.
+template <int N>
+inline void lane_sums(const Pack (&a)[N], double* sums) {
+  for (int first = 0; first < N; first += 4) {
+    const auto at = [&](int k) { return first + k < N ? a[first + k].v : Register{}; };
+    const Register two = detail::evens(at(0), at(1)) + detail::odds(at(0), at(1)),
+                   more = detail::evens(at(2), at(3)) + detail::odds(at(2), at(3)),
+                   four = detail::even_pairs(two, more) + detail::odd_pairs(two, more);
+    for (int k = 0; k < 4 && first + k < N; ++k) sums[first + k] = four[k] + four[k + 4];
+  }
+}
+
 // base[index[k]] in lane k.
 inline Pack gather(const double* base, const std::uint32_t* index) {
   Pack p;
@@ -198,10 +230,11 @@ inline Pack gather(const double* base, const std::uint32_t* index) {
   return p;
 }
 
-// The integer nearest to a, for |a| < 2^51: adding 1.5 * 2^52 leaves no room for a fraction.
-inline Pack nearest_integer(const Pack& a) {
-  const Pack magic = 6755399441055744.0;
-  return (a + magic) - magic;
+// As for double: the integer nearest to a, for |a| < 2^51, and 2^n for an integer n of -1022 to 1023.
+inline Pack nearest_integer(const Pack& a) { return (a + integer_bits) - integer_bits; }
+inline Pack power_of_two(const Pack& n) {
+  using Integers = std::uint64_t __attribute__((vector_size(64), may_alias));
+  return Pack(reinterpret_cast<Register>((reinterpret_cast<Integers>((n + integer_bits).v) + 1023) << 52));
 }
 
 }  // inline namespace

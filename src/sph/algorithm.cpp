@@ -20,6 +20,7 @@ constexpr double advective_cfl = 0.2;  // h per step at most, for the schemes wh
 constexpr double step_growth = 1.1;    // of those schemes, from a first step of `first_step` times the limit
 constexpr double first_step = 0.05;
 constexpr double fastest = 1e3;           // m/s: nothing granular moves so fast, the run has failed
+constexpr int list_steps = 50;            // a neighbour list should last, explicit steps being short
 constexpr double closest_to_wall = 0.02;  // over dp
 
 // a += factor b, all directions.
@@ -89,10 +90,10 @@ void brake_detached(const Work& w, Particles& p, const Model& model, double dt) 
 }
 
 // Symplectic midpoint scheme                                                    Minatti & Paris 2015, section 3.5
-void midpoint_step(State& state, Work& w, const Model& model) {
+void midpoint_step(State& state, Work& w, const Model& model, double travel) {
   Particles& p = state.particles;
   const double half = 0.5 * state.dt;
-  if (outdated(w.pairs, p, model.dim, half)) rebuild(w.pairs, p, model);
+  if (outdated(w.pairs, p, model.dim, half)) rebuild(w.pairs, p, model, travel);
   kinematics(w, p, model, Kinematics::density);
   const auto half_step = [&] {
     add(p.x, p.v, half, model);
@@ -108,11 +109,11 @@ void midpoint_step(State& state, Work& w, const Model& model) {
 }
 
 // rho -> pressure -> viscosity -> pressure force -> viscous force (at v(n+1) or v(n)) -> x
-void sequential_step(State& state, Work& w, const Model& model) {
+void sequential_step(State& state, Work& w, const Model& model, double travel) {
   Particles& p = state.particles;
   const double dt = state.dt;
   const bool corrected = model.corrected();
-  if (outdated(w.pairs, p, model.dim, 0)) rebuild(w.pairs, p, model);
+  if (outdated(w.pairs, p, model.dim, 0)) rebuild(w.pairs, p, model, travel);
   kinematics(w, p, model, corrected ? Kinematics::corrected : Kinematics::pairs, true);
   if (model.numerics.density_diffusion > 0) diffuse_density(w, p, model);
   add(p.rho, w.density_rate, dt);
@@ -178,7 +179,7 @@ double step_limit(const State& state, const Model& model) {
 
 void initialise(State& state, Work& w, const Model& model) {
   check(model);
-  rebuild(w.pairs, state.particles, model);
+  rebuild(w.pairs, state.particles, model, 0);
   refresh(state, w, model);
   state.max_kinematic_viscosity = constitutive(w, state.particles, model);
 }
@@ -207,10 +208,11 @@ void step(State& state, Work& w, const Model& model) {
     dt = std::min(dt, state.dt > 0 ? step_growth * state.dt : first_step * dt);
   }
   state.dt = dt;
+  const double travel = list_steps * speed * dt;
   if (model.stepping == Stepping::minatti2015)
-    midpoint_step(state, w, model);
+    midpoint_step(state, w, model, travel);
   else
-    sequential_step(state, w, model);
+    sequential_step(state, w, model, travel);
   state.time += dt;
   ++state.step;
 }

@@ -22,18 +22,18 @@ struct Laws {
 
 // Eight particles: pressure, viscosity and the new root.
 template <class L>
-void eight(const L& law, const Octet& rho, const Octet& gamma, Octet& root, Octet& pressure, Octet& viscosity) {
+void eight(const L& law, const Pack& rho, const Pack& gamma, Pack& root, Pack& pressure, Pack& viscosity) {
   // d/d0 = rho_s*^(-1/D): in 2D it cancels sqrt(rho_s) in i; in 3D rho_s*^(1/6) remains, taken from the last root.
-  Octet shear = gamma * law.grains.shear_scale(law.d0);
+  Pack shear = gamma * law.grains.shear_scale(law.d0);
   if (law.dim == 3)
-    for (int k = 0; k < octet_size; ++k) shear[k] *= std::pow(1 + root[k] * root[k], 1.0 / 6);
-  const Octet r = rho / (law.grains.grain_density * law.dilatancy.phi_max);
+    for (int k = 0; k < Pack::lanes; ++k) shear.set(k, shear[k] * std::pow(1 + root[k] * root[k], 1.0 / 6));
+  const Pack r = rho / (law.grains.grain_density * law.dilatancy.phi_max);
   root = laws::eos::largest_root(law.dilatancy.cubic(r, shear), root);
   pressure = law.grains.pressure(root);
   // eta0 = p a (mu - mu_s)/i with a = i/gamma, in the form that is finite at rest and at p = 0 (eq. 47).
-  const Octet safe = larger(root, splat(1e-12)), a = law.grains.shear_scale(law.d0) / safe;
-  const Octet eta0 = pressure * a * law.excess(Octet(gamma * a));
-  viscosity = law.regularisation.viscosity(Octet(law.static_friction * pressure), eta0, gamma);
+  const Pack safe = max(root, Pack(1e-12)), a = law.grains.shear_scale(law.d0) / safe;
+  const Pack eta0 = pressure * a * law.excess(Pack(gamma * a));
+  viscosity = law.regularisation.viscosity(Pack(law.static_friction * pressure), eta0, gamma);
 }
 
 template <class L>
@@ -41,24 +41,24 @@ double sweep(const L& law, Work& w, Particles& p) {
   const std::int64_t n = p.size();
   std::vector<double> largest(static_cast<std::size_t>((n + block - 1) / block));
   parallel_blocks(n, block, [&](std::int64_t begin, std::int64_t end) {
-    Octet most{};
-    for (std::int64_t i = begin; i < end; i += octet_size) {
-      const auto lanes = static_cast<std::size_t>(std::min<std::int64_t>(octet_size, end - i));
+    Pack most{};
+    for (std::int64_t i = begin; i < end; i += Pack::lanes) {
+      const auto lanes = static_cast<std::size_t>(std::min<std::int64_t>(Pack::lanes, end - i));
       const auto load = [&](const std::vector<double>& a, double fill) {
-        Octet v = splat(fill);
+        Pack v = Pack(fill);
         std::memcpy(&v, a.data() + i, lanes * sizeof(double));
         return v;
       };
       // lanes beyond the last particle are filled with loose material: no pressure, no viscosity
-      const Octet rho = load(p.rho, 0.1 * law.grains.grain_density), gamma = load(w.shear_rate, 0);
-      Octet root = load(p.root, 0), pressure, viscosity;
+      const Pack rho = load(p.rho, 0.1 * law.grains.grain_density), gamma = load(w.shear_rate, 0);
+      Pack root = load(p.root, 0), pressure, viscosity;
       eight(law, rho, gamma, root, pressure, viscosity);
       std::memcpy(p.root.data() + i, &root, lanes * sizeof(double));
       std::memcpy(w.pressure.data() + i, &pressure, lanes * sizeof(double));
       std::memcpy(w.viscosity.data() + i, &viscosity, lanes * sizeof(double));
-      most = larger(most, Octet(viscosity / rho));
+      most = max(most, Pack(viscosity / rho));
     }
-    largest[static_cast<std::size_t>(begin / block)] = lane_max(most);
+    largest[static_cast<std::size_t>(begin / block)] = bagnold::largest(most);
   });
   double result = 0;
   for (const double value : largest) result = std::max(result, value);

@@ -62,7 +62,7 @@ void write_pressure_records(Work& w, std::int64_t n) {
 // Diagonal block of m - dt A without m and dt: residual pairs, the stress of the neighbours, and the own stress where
 // neighbours are missing. Stored as upper triangle.
 template <int D>
-void store_block(Work& w, const Model& model, const Particles& p, std::size_t i, double isotropic, const Octet* pairs,
+void store_block(Work& w, const Model& model, const Particles& p, std::size_t i, double isotropic, const Pack* pairs,
                  double neighbours) {
   double g2 = 0;
   for (std::size_t a = 0; a < D; ++a) g2 += w.imbalance[a][i] * w.imbalance[a][i];
@@ -86,20 +86,20 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = w.wide.at(k);
-    Octet force[D]{}, quartic[Quartic<D>::size]{}, block[D * (D + 1) / 2]{}, around{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[F::size], r[D];
+    Pack force[D]{}, quartic[Quartic<D>::size]{}, block[D * (D + 1) / 2]{}, around{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[F::size], r[D];
       gather(w.wide, j, other);
-      Octet r2{};
+      Pack r2{};
       for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q], r2 += r[d] * r[d];
-      const Octet f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f;
+      const Pack f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f;
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) force[a] += (aj * self[F::P + a * D + b] + ai * other[F::P + a * D + b]) * r[b];
-      const Octet weight = coefficient * 0.5 * (self[F::area] * other[F::volume] + other[F::area] * self[F::volume]);
-      const Octet kk = Mean::of(splat(self[F::eta]), other[F::eta]) * weight * f / (r2 + tiny);
+      const Pack weight = coefficient * 0.5 * (self[F::area] * other[F::volume] + other[F::area] * self[F::volume]);
+      const Pack kk = Mean::of(Pack(self[F::eta]), other[F::eta]) * weight * f / (r2 + tiny);
       w.k[q] = kk;
       Quartic<D>::add(quartic, 0.5 * kk, r);
-      const Octet stress = 2 * other[F::eta] * other[F::volume] * ai * ai;
+      const Pack stress = 2 * other[F::eta] * other[F::volume] * ai * ai;
       around += stress * r2;
       for (int a = 0, m = 0; a < D; ++a)
         for (int b = a; b < D; ++b, ++m) block[m] += (kk + stress * isotropic) * r[a] * r[b];
@@ -133,12 +133,12 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, double trace_
   parallel_for(n, [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = w.slim.at(k);
-    Octet S[D * D]{}, H[D * (D + 1) / 2]{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[D + 1], r[D], dv[D], vr{};
+    Pack S[D * D]{}, H[D * (D + 1) / 2]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[D + 1], r[D], dv[D], vr{};
       gather(w.slim, j, other);
       for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q], dv[d] = self[d] - other[d], vr += dv[d] * r[d];
-      const Octet af = other[D] * w.f[q], t = 0.5 * w.k[q] * vr;
+      const Pack af = other[D] * w.f[q], t = 0.5 * w.k[q] * vr;
       for (int a = 0, m = 0; a < D; ++a) {
         for (int b = 0; b < D; ++b) S[a * D + b] += af * dv[a] * r[b];
         for (int b = a; b < D; ++b, ++m) H[m] += t * r[a] * r[b];
@@ -191,14 +191,14 @@ void force_sweep(Work& w, const Particles& p, const Model& model, Field& force) 
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = records.at(k);
-    Octet sum[D]{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[F::size], r[D], turned[D], missed{}, missed_other{};
+    Pack sum[D]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[F::size], r[D], turned[D], missed{}, missed_other{};
       gather(records, j, other);
       for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q];
       for (int a = 0; a < D; ++a) {
-        const Octet dv = self[F::v + a] - other[F::v + a];
-        Octet own = dv, theirs = a == D - 1 ? dv : dv * other[F::sign];
+        const Pack dv = self[F::v + a] - other[F::v + a];
+        Pack own = dv, theirs = a == D - 1 ? dv : dv * other[F::sign];
         for (int b = 0; b < D; ++b) {
           own -= self[F::L + a * D + b] * r[b];
           theirs -= other[F::L + a * D + b] * r[b];
@@ -207,7 +207,7 @@ void force_sweep(Work& w, const Particles& p, const Model& model, Field& force) 
         missed_other += theirs * r[a];
         turned[a] = a == D - 1 ? r[a] : r[a] * other[F::sign];
       }
-      const Octet f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f, half_k = 0.5 * w.k[q];
+      const Pack f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f, half_k = 0.5 * w.k[q];
       for (int a = 0; a < D; ++a) {
         for (int b = 0; b < D; ++b) sum[a] += (aj * self[F::T + a * D + b] + ai * other[F::T + a * D + b]) * r[b];
         sum[a] += half_k * (missed * r[a] + missed_other * turned[a]);
@@ -226,7 +226,7 @@ double trace_factor(const Model& model) {
 }  // namespace
 
 void corrected_pressure_and_coefficients(Work& w, const Particles& p, const Model& model) {
-  w.k.resize(w.pairs.index.size() / octet_size);
+  w.k.resize(w.pairs.index.size() / Pack::lanes);
   const double coefficient = std::visit([&](const auto& v) { return v.coefficient(model.dim); }, model.viscous);
   const double isotropic = 0.5 - trace_factor(model);
   std::visit(

@@ -20,23 +20,31 @@ void dispatch(const Model& model, F&& f) {
       model.kernel);
 }
 
-// Separation of a particle from eight others: f = -W'(r)/r, so that grad_i W = -f r.
+// The kernel at a separation of square r2 > 0: f = -W'(r)/r, so that grad_i W = -f r. R = r/h from 1/r.
 template <int D, class Kernel>
 struct PairShape {
-  double inv_h, slope_scale, value_scale;
-  explicit PairShape(double h) : inv_h(1 / h) {
+  double inv_h, slope_scale, value_scale, tiny;  // tiny: added to r2, keeps 1/r finite
+  explicit PairShape(double h) : inv_h(1 / h), tiny(1e-12 * h * h) {
     double hd = 1;
     for (int k = 0; k < D; ++k) hd *= h;
     value_scale = Kernel::norm(D) / hd;
     slope_scale = value_scale / (h * h);
   }
   template <class T>
+  T ratio(T r2, T inv_r) const {
+    return r2 * inv_r * inv_h;
+  }
+  template <class T>
   T ratio(T r2) const {
-    return sqrt(r2) * inv_h;
+    return ratio(r2, rsqrt(r2));
   }
   template <class T>
   T f(T R) const {
     return slope_scale * Kernel::slope(R);
+  }
+  template <class T>
+  T weighted_f(T weight, T R) const {  // weight f, in a short chain of products
+    return (slope_scale * weight) * Kernel::slope(R);
   }
   template <class T>
   T w(T R) const {

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "sph/dispatch.hpp"
 #include "sph/ghosts.hpp"
+#include "sph/pair_record.hpp"
 #include "sph/small_tensor.hpp"
 
 namespace bagnold::sph {
@@ -14,86 +15,109 @@ constexpr double blend_from = 0.3, blend_to = 0.5;
 // Sums over the neighbours of one particle.
 template <int D>
 struct Sums {
-  double density = 0;                     // sum m_j f (v_ij . r_ij)
-  Matrix<D> S{};                          // sum A_j f v_ij r_ij
-  std::array<double, D*(D + 1) / 2> M{};  // sum A_j f r r, upper triangle
-  std::array<double, D> imbalance{};
-  double concentration = 0;
+  double density;                       // sum m_j f (v_ij . r_ij)
+  Matrix<D> S;                          // sum A_j f v_ij r_ij
+  std::array<double, D*(D + 1) / 2> M;  // sum A_j f r r, upper triangle
+  std::array<double, D> imbalance;
+  double concentration;
 };
 
 template <int D>
-void write_records(Work& w, const Particles& p) {
+void write_records(Work& w, const Particles& p, bool corrected) {
+  using F = PairRecord<D>;
+  auto& records = pair_records<D>(w);
   const std::int64_t n = p.size();
-  w.slim.resize(w.pairs.elements(n));
+  records.resize(w.pairs.elements(n));
   parallel_for(n, [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
-    double* to = w.slim.at(k);
-    for (std::size_t d = 0; d < D; ++d) to[d] = p.x[d][i], to[D + d] = p.v[d][i];
-    to[2 * D] = w.area[i];
-    to[2 * D + 1] = p.mass[i];
+    double* to = records.at(k);
+    for (std::size_t d = 0; d < D; ++d) to[F::x + d] = p.x[d][i], to[F::v + d] = p.v[d][i];
+    to[F::mass] = corrected ? w.area[i] : p.mass[i];
+    to[F::inv_rho] = 1 / p.rho[i];
   });
-  fill_images(w.pairs, n, w.slim, [&](std::size_t image, const double* from, double* to) {
+  fill_images(w.pairs, n, records, [&](std::size_t image, const double* from, double* to) {
     const Images& m = w.pairs.images;
     for (std::size_t d = 0; d < D; ++d) {
-      to[d] = m.R[image][d] * from[d] + m.shift[image][d];
-      to[D + d] = m.S[image][d] * from[D + d];
+      to[F::x + d] = m.R[image][d] * from[F::x + d] + m.shift[image][d];
+      to[F::v + d] = m.S[image][d] * from[F::v + d];
     }
-    to[2 * D] = from[2 * D];
-    to[2 * D + 1] = from[2 * D + 1];
+    to[F::mass] = from[F::mass];
+    to[F::inv_rho] = from[F::inv_rho];
   });
-  double* dummy = w.slim.at(w.pairs.elements(n) - 1);
-  for (int d = 0; d < D; ++d) dummy[d] = 1e30, dummy[D + d] = 0;
-  dummy[2 * D] = dummy[2 * D + 1] = 0;
+  double* dummy = records.at(w.pairs.elements(n) - 1);
+  for (int d = 0; d < D; ++d) dummy[F::x + d] = 1e30, dummy[F::v + d] = 0;
+  dummy[F::mass] = dummy[F::inv_rho] = 0;
 }
 
+// a += w b c^T; the upper triangle of a += w b b^T.
+template <int D>
+void add_product(Pack* a, const Pack& w, const Pack (&b)[D], const Pack (&c)[D]) {
+  for (int i = 0; i < D; ++i) {
+    const Pack wb = w * b[i];
+    for (int j = 0; j < D; ++j) a[i * D + j] += wb * c[j];
+  }
+}
+template <int D>
+void add_square(Pack* a, const Pack& w, const Pack (&b)[D]) {
+  for (int i = 0, m = 0; i < D; ++i) {
+    const Pack wb = w * b[i];
+    for (int j = i; j < D; ++j, ++m) a[m] += wb * b[j];
+  }
+}
+
+// The sums of particles begin to end.
 template <int D, class Kernel, Kinematics what, bool moments>
-Sums<D> sum_neighbours(Work& w, const PairShape<D, Kernel>& shape, std::int64_t i) {
+void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begin, std::int64_t end, Sums<D>* sums) {
+  using F = PairRecord<D>;
   constexpr bool printed = what != Kinematics::corrected, gradients = what != Kinematics::density;
-  const double* self = w.slim.at(i);
-  Octet density{}, S[D * D]{}, M[D * (D + 1) / 2]{}, missing[D]{}, C{};
-  for_each_octet(w.pairs, i, [&](const std::int32_t* j, std::size_t q) {
-    Octet other[2 * D + 2], r[D], v[D];
-    gather(w.slim, j, other);
-    Octet r2{}, vr{};
-    for (int d = 0; d < D; ++d) {
-      r[d] = self[d] - other[d];
-      v[d] = self[D + d] - other[D + d];
-      r2 += r[d] * r[d];
-      vr += v[d] * r[d];
-    }
-    const Octet R = shape.ratio(r2), f = shape.f(R), af = other[2 * D] * f;
-    if constexpr (printed) density += other[2 * D + 1] * f * vr;
-    if constexpr (what == Kinematics::corrected) {
-      for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
-      w.f[q] = f;
-    }
-    if constexpr (gradients)
-      for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) S[a * D + b] += af * v[a] * r[b];
-    if constexpr (moments) {
-      for (int a = 0, m = 0; a < D; ++a) {
-        missing[a] += af * r[a];
-        for (int b = a; b < D; ++b, ++m) M[m] += af * r[a] * r[b];
+  constexpr int triangle = D * (D + 1) / 2;
+  const auto& records = pair_records<D>(w);
+  for (std::int64_t i = begin; i < end; ++i, ++sums) {
+    const double* self = records.at(i);
+    Pack density{}, S[D * D]{}, M[triangle + D + 1]{};  // M, imbalance, concentration
+    for_each_pack(w.pairs, i, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[F::inv_rho + 1], r[D], v[D], r2 = shape.tiny, vr{};
+      gather(records, j, other);
+      for (int d = 0; d < D; ++d) {
+        r[d] = self[F::x + d] - other[F::x + d];
+        v[d] = self[F::v + d] - other[F::v + d];
+        r2 += r[d] * r[d];
+        vr += v[d] * r[d];
       }
-      C += other[2 * D] * shape.w(R);
+      const Pack R = shape.ratio(r2), mf = shape.weighted_f(other[F::mass], R),
+                 af = printed ? mf * other[F::inv_rho] : mf;
+      if constexpr (printed) density += mf * vr;
+      if constexpr (what == Kinematics::corrected) {
+        for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
+        w.f[q] = shape.f(R);
+      }
+      if constexpr (gradients) add_product<D>(S, af, v, r);
+      if constexpr (moments) {
+        add_square<D>(M, af, r);
+        for (int d = 0; d < D; ++d) M[triangle + d] += af * r[d];
+        M[triangle + D] += (printed ? other[F::mass] * other[F::inv_rho] : other[F::mass]) * shape.w(R);
+      }
+    });
+    if constexpr (printed) sums->density = lane_sum(density);
+    if constexpr (gradients) lane_sums(S, sums->S.data());
+    if constexpr (moments) {
+      double m[triangle + D + 1];
+      lane_sums(M, m);
+      std::copy_n(m, triangle, sums->M.data());
+      std::copy_n(m + triangle, D, sums->imbalance.data());
+      sums->concentration = m[triangle + D] + w.area[static_cast<std::size_t>(i)] * shape.w(0.0);
     }
-  });
-  Sums<D> sums;
-  sums.density = lane_sum(density);
-  for (std::size_t m = 0; m < D * D; ++m) sums.S[m] = lane_sum(S[m]);
-  for (std::size_t m = 0; m < D * (D + 1) / 2; ++m) sums.M[m] = lane_sum(M[m]);
-  for (std::size_t d = 0; d < D; ++d) sums.imbalance[d] = lane_sum(missing[d]);
-  sums.concentration = lane_sum(C) + self[2 * D] * shape.w(0.0);
-  return sums;
+  }
 }
 
 template <int D, class Kernel>
 void add_ghosts(Sums<D>& sums, const PairShape<D, Kernel>& shape, const Model& model, const double* self) {
+  using F = PairRecord<D>;
   std::array<double, D> x, v;
-  for (std::size_t d = 0; d < D; ++d) x[d] = self[d], v[d] = self[D + d];
-  const double area = self[2 * D], mass = self[2 * D + 1];
+  for (std::size_t d = 0; d < D; ++d) x[d] = self[F::x + d], v[d] = self[F::v + d];
+  const double mass = self[F::mass], area = mass * self[F::inv_rho];
   for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
-    double r2 = 0, vr = 0;
+    double r2 = shape.tiny, vr = 0;
     for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * v[d] * r[d];
     const double R = shape.ratio(r2), f = shape.f(R);
     sums.density += mass * f * vr;
@@ -128,33 +152,44 @@ Matrix<D> correction(const Matrix<D>& M, double coverage) {
   return B;
 }
 
+// What follows from the sums of particle i.
+template <int D, Kinematics what, bool moments>
+void store(Work& w, const Particles& p, const Model& model, std::size_t i, const Sums<D>& s) {
+  if constexpr (what != Kinematics::corrected) w.density_rate[i] = -s.density;
+  const double hoop = model.axisymmetric ? p.v[0][i] * inverse_radius(model, p.x[0][i]) : 0;
+  if constexpr (moments) {
+    const Matrix<D> M = from_upper<D>(s.M.data());
+    w.coverage[i] = smallest_eigenvalue(M);
+    w.concentration[i] = s.concentration;
+    for (std::size_t d = 0; d < D; ++d) w.imbalance[d][i] = s.imbalance[d];
+    const Matrix<D> B = correction<D>(M, w.coverage[i]);
+    std::copy(B.begin(), B.end(), w.correction.begin() + static_cast<std::ptrdiff_t>(i * D * D));
+    if constexpr (what == Kinematics::corrected) {
+      const Matrix<D> L = product<D>(s.S, B);
+      double divergence = hoop;
+      for (int d = 0; d < D; ++d) divergence += L[d * D + d];
+      w.density_rate[i] = -p.rho[i] * divergence;
+      std::copy(L.begin(), L.end(), w.gradient.begin() + static_cast<std::ptrdiff_t>(i * D * D));
+      w.shear_rate[i] = shear_rate<D>(L, hoop);
+    }
+  }
+  if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate<D>(s.S, hoop);
+}
+
 template <int D, class Kernel, Kinematics what, bool moments>
 void sweep(Work& w, const Particles& p, const Model& model) {
+  constexpr std::int64_t block = 128;
   const PairShape<D, Kernel> shape(model.h());
   const bool ghosts = model.floor && !model.corrected();
-  parallel_for(p.size(), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    Sums<D> s = sum_neighbours<D, Kernel, what, moments>(w, shape, k);
-    if (ghosts && p.x[D - 1][i] < 2 * model.h()) add_ghosts(s, shape, model, w.slim.at(k));
-    if constexpr (what != Kinematics::corrected) w.density_rate[i] = -s.density;
-    const double hoop = model.axisymmetric ? p.v[0][i] * inverse_radius(model, p.x[0][i]) : 0;
-    if constexpr (moments) {
-      const Matrix<D> M = from_upper<D>(s.M.data());
-      w.coverage[i] = smallest_eigenvalue(M);
-      w.concentration[i] = s.concentration;
-      for (std::size_t d = 0; d < D; ++d) w.imbalance[d][i] = s.imbalance[d];
-      const Matrix<D> B = correction<D>(M, w.coverage[i]);
-      std::copy(B.begin(), B.end(), w.correction.begin() + k * D * D);
-      if constexpr (what == Kinematics::corrected) {
-        const Matrix<D> L = product<D>(s.S, B);
-        double divergence = hoop;
-        for (int d = 0; d < D; ++d) divergence += L[d * D + d];
-        w.density_rate[i] = -p.rho[i] * divergence;
-        std::copy(L.begin(), L.end(), w.gradient.begin() + k * D * D);
-        w.shear_rate[i] = shear_rate<D>(L, hoop);
-      }
+  parallel_blocks(p.size(), block, [&](std::int64_t begin, std::int64_t end) {
+    std::array<Sums<D>, block> sums;
+    sum_neighbours<D, Kernel, what, moments>(w, shape, begin, end, sums.data());
+    for (std::int64_t k = begin; k < end; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      Sums<D>& s = sums[static_cast<std::size_t>(k - begin)];
+      if (ghosts && p.x[D - 1][i] < 2 * model.h()) add_ghosts(s, shape, model, pair_records<D>(w).at(k));
+      store<D, what, moments>(w, p, model, i, s);
     }
-    if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate<D>(s.S, hoop);
   });
 }
 
@@ -172,13 +207,13 @@ void kinematics(Work& w, const Particles& p, const Model& model, Kinematics what
   update_volumes(w, p, model);
   if (what == Kinematics::corrected) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
-      w.r[d].resize(w.pairs.index.size() / octet_size);
-    w.f.resize(w.pairs.index.size() / octet_size);
+      w.r[d].resize(w.pairs.index.size() / Pack::lanes);
+    w.f.resize(w.pairs.index.size() / Pack::lanes);
   }
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;
     using Kernel = std::decay_t<decltype(kernel)>;
-    write_records<D>(w, p);
+    write_records<D>(w, p, what == Kinematics::corrected);
     if (what == Kinematics::density)
       sweep<D, Kernel, Kinematics::density, false>(w, p, model);
     else if (what == Kinematics::corrected)

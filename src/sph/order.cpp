@@ -78,11 +78,11 @@ void diffuse(Work& w, const Particles& p, const Model& model) {
   std::fill_n(w.slim.at(w.pairs.elements(n) - 1), 8, 0.0);
   parallel_for(n, [&](std::int64_t k) {
     const double own = w.slim.at(k)[rho];
-    Octet sum[D]{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[2];
+    Pack sum[D]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[2];
       gather(w.slim, j, other);
-      const Octet t = other[area] * w.f[q] * (own - other[rho]);
+      const Pack t = other[area] * w.f[q] * (own - other[rho]);
       for (std::size_t d = 0; d < D; ++d) sum[d] += t * w.r[d][q];
     });
     for (int a = 0; a < D; ++a) {
@@ -96,11 +96,11 @@ void diffuse(Work& w, const Particles& p, const Model& model) {
   });
   parallel_for(n, [&](std::int64_t k) {
     const double* self = w.slim.at(k);
-    Octet sum{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[slope + D];
+    Pack sum{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[slope + D];
       gather(w.slim, j, other);
-      Octet jump = other[rho] - self[rho];
+      Pack jump = other[rho] - self[rho];
       for (std::size_t d = 0; d < D; ++d) jump += 0.5 * (self[slope + d] + other[slope + d]) * w.r[d][q];
       sum += other[area] * w.f[q] * jump;
     });

@@ -5,103 +5,98 @@
 #include "sph/dispatch.hpp"
 #include "sph/forces.hpp"
 #include "sph/ghosts.hpp"
+#include "sph/pair_record.hpp"
 
 namespace bagnold::sph {
 namespace {
 
+// Kinematics has written the rest, at the same positions.
 template <int D>
-struct PairRecord {
-  static constexpr int x = 0, v = D, mass = 2 * D, P = mass + 1, eta = mass + 2, inv_rho = mass + 3,
-                       size = mass + 4;  // P = p/rho^2
-};
-
-template <int D>
-auto& pair_records(Work& w) {
-  if constexpr (D == 2)
-    return w.slim;
-  else
-    return w.wide;
-}
-
-template <int D>
-void write_pair_records(Work& w, const Particles& p, const Model&) {
+void write_stresses(Work& w, const Particles& p) {
   using F = PairRecord<D>;
   auto& records = pair_records<D>(w);
-  const std::int64_t n = p.size();
-  records.resize(w.pairs.elements(n));
-  parallel_for(n, [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    double* to = records.at(k);
-    for (std::size_t d = 0; d < D; ++d) to[F::x + d] = p.x[d][i], to[F::v + d] = p.v[d][i];
-    const double inv_rho = 1 / p.rho[i];
-    to[F::mass] = p.mass[i];
-    to[F::P] = w.pressure[i] * inv_rho * inv_rho;
-    to[F::eta] = w.viscosity[i];
-    to[F::inv_rho] = inv_rho;
-  });
-  fill_images(w.pairs, n, records, [&](std::size_t image, const double* from, double* to) {
-    const Images& m = w.pairs.images;
-    for (std::size_t d = 0; d < D; ++d) {
-      to[F::x + d] = m.R[image][d] * from[F::x + d] + m.shift[image][d];
-      to[F::v + d] = m.S[image][d] * from[F::v + d];
-    }
-    std::copy(from + F::mass, from + F::size, to + F::mass);
-  });
-  double* dummy = records.at(w.pairs.elements(n) - 1);
-  for (int d = 0; d < D; ++d) dummy[F::x + d] = 1e30, dummy[F::v + d] = 0;
-  std::fill(dummy + F::mass, dummy + F::size, 0.0);
-}
-
-// m_j f (P_i + P_j + Pi_ij - coefficient eta_ij (v_ij . r_ij)/(r_ij^2 rho_i rho_j)): acceleration of i over r_ij.
-template <class Mean, bool viscous, bool artificial, class T>
-T strength(const T& f, const T& vr, const T& r2, const double* a, const T* b, double coefficient, double alpha_h_c) {
-  // a, b: mass, P, eta, 1/rho of the two particles
-  T s = a[1] + b[1];
-  if constexpr (viscous) {
-    T drag = coefficient * Mean::of(constant<T>(a[2]), b[2]) * (a[3] * b[3]);
-    if constexpr (artificial) drag += alpha_h_c * 2 * a[3] * b[3] / (a[3] + b[3]);
-    s -= drag * vr / r2;
-  }
-  return b[0] * f * s;
-}
-
-template <int D, class Kernel, class Mean, bool viscous, bool artificial>
-void rate_sweep(Work& w, const Particles& p, const Model& model) {
-  using F = PairRecord<D>;
-  const PairShape<D, Kernel> shape(model.h());
-  const auto& records = pair_records<D>(w);
-  const double tiny = 1e-12 * model.h() * model.h(), coefficient = laws::viscous::Cleary::coefficient(D),
-               alpha_h_c = model.numerics.artificial_viscosity * model.h() * model.sound_speed();
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
-    const double* self = records.at(k);
-    Octet sum[D]{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t) {
-      Octet other[F::size], r[D], r2 = splat(tiny), vr{};
+    const double inv_rho = 1 / p.rho[i];
+    double* to = records.at(k);
+    to[F::inv_rho] = inv_rho;
+    to[F::P] = w.pressure[i] * inv_rho * inv_rho;
+    to[F::eta] = w.viscosity[i];
+  });
+  fill_images(w.pairs, p.size(), records, [](std::size_t, const double* from, double* to) {
+    std::copy(from + F::inv_rho, from + F::size, to + F::inv_rho);
+  });
+  double* dummy = records.at(w.pairs.elements(p.size()) - 1);
+  dummy[F::inv_rho] = dummy[F::P] = dummy[F::eta] = 0;
+}
+
+// P_i + P_j + Pi_ij - coefficient eta_ij (v_ij . r_ij)/(r_ij^2 rho_i rho_j); times m_j f r_ij it is the acceleration of i.
+// `vr` is v_ij . r_ij/r_ij^2; a, b are the records of the two particles.
+template <int D, class Mean, bool viscous, bool artificial, class T>
+T strength(const T& vr, const double* a, const T* b, double coefficient, double alpha_h_c) {
+  using F = PairRecord<D>;
+  T s = a[F::P] + b[F::P];
+  if constexpr (viscous) {
+    T drag = Mean::of(T(a[F::eta]), b[F::eta]) * (coefficient * a[F::inv_rho]) * b[F::inv_rho];
+    if constexpr (artificial)
+      drag += alpha_h_c * 2 * a[F::inv_rho] * b[F::inv_rho] * reciprocal(T(a[F::inv_rho] + b[F::inv_rho]));
+    s -= drag * vr;
+  }
+  return s;
+}
+
+// Sums over the neighbours of particles begin to end.
+template <int D, class Kernel, class Mean, bool viscous, bool artificial>
+void sum_rates(Work& w, const PairShape<D, Kernel> shape, double coefficient, double alpha_h_c, std::int64_t begin,
+               std::int64_t end, std::array<double, D>* sums) {
+  using F = PairRecord<D>;
+  const auto& records = pair_records<D>(w);
+  for (std::int64_t i = begin; i < end; ++i, ++sums) {
+    const double* self = records.at(i);
+    Pack sum[D]{};
+    for_each_pack(w.pairs, i, [&](const std::int32_t* j, std::size_t) {
+      Pack other[F::size], r[D], r2 = shape.tiny, vr{};
       gather(records, j, other);
       for (int d = 0; d < D; ++d) {
         r[d] = self[F::x + d] - other[F::x + d];
         r2 += r[d] * r[d];
         vr += (self[F::v + d] - other[F::v + d]) * r[d];
       }
-      const Octet s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass,
-                                                          other + F::mass, coefficient, alpha_h_c);
+      const Pack inv_r = rsqrt(r2), mf = shape.weighted_f(other[F::mass], shape.ratio(r2, inv_r));
+      const Pack s =
+          mf * strength<D, Mean, viscous, artificial>(Pack(vr * (inv_r * inv_r)), self, other, coefficient, alpha_h_c);
       for (int d = 0; d < D; ++d) sum[d] += s * r[d];
     });
-    std::array<double, D> a;
-    for (std::size_t d = 0; d < D; ++d) a[d] = model.gravity[d] + lane_sum(sum[d]);
-    if (model.floor && p.x[D - 1][i] < 2 * model.h()) {
-      std::array<double, D> x;
-      for (std::size_t d = 0; d < D; ++d) x[d] = p.x[d][i];
-      for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
-        double r2 = tiny, vr = 0;
-        for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * p.v[d][i] * r[d];
-        const double s = strength<Mean, viscous, artificial>(shape.f(shape.ratio(r2)), vr, r2, self + F::mass,
-                                                             self + F::mass, coefficient, alpha_h_c);
-        for (std::size_t d = 0; d < D; ++d) a[d] += s * r[d];
-      });
+    lane_sums(sum, sums->data());
+  }
+}
+
+template <int D, class Kernel, class Mean, bool viscous, bool artificial>
+void rate_sweep(Work& w, const Particles& p, const Model& model) {
+  using F = PairRecord<D>;
+  constexpr std::int64_t block = 128;
+  const PairShape<D, Kernel> shape(model.h());
+  const double coefficient = laws::viscous::Cleary::coefficient(D),
+               alpha_h_c = model.numerics.artificial_viscosity * model.h() * model.sound_speed();
+  parallel_blocks(p.size(), block, [&](std::int64_t begin, std::int64_t end) {
+    std::array<std::array<double, D>, block> sums;
+    sum_rates<D, Kernel, Mean, viscous, artificial>(w, shape, coefficient, alpha_h_c, begin, end, sums.data());
+    for (std::int64_t k = begin; k < end; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      auto& a = sums[static_cast<std::size_t>(k - begin)];
+      const double* self = pair_records<D>(w).at(k);
+      std::array<double, D> x, v;
+      for (std::size_t d = 0; d < D; ++d) x[d] = self[F::x + d], v[d] = self[F::v + d];
+      if (model.floor && x[D - 1] < 2 * model.h())
+        for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
+          double r2 = shape.tiny, vr = 0;
+          for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * v[d] * r[d];
+          const double mf = shape.weighted_f(self[F::mass], shape.ratio(r2));
+          const double s = mf * strength<D, Mean, viscous, artificial>(vr / r2, self, self, coefficient, alpha_h_c);
+          for (std::size_t d = 0; d < D; ++d) a[d] += s * r[d];
+        });
+      for (std::size_t d = 0; d < D; ++d) w.acceleration[d][i] = model.gravity[d] + a[d];
     }
-    for (std::size_t d = 0; d < D; ++d) w.acceleration[d][i] = a[d];
   });
 }
 
@@ -117,18 +112,18 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
   using F = PairRecord<D>;
   const PairShape<D, Kernel> shape(model.h());
   const auto& records = pair_records<D>(w);
-  const double tiny = 1e-12 * model.h() * model.h(), coefficient = laws::viscous::Cleary::coefficient(D);
+  const double coefficient = laws::viscous::Cleary::coefficient(D);
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = records.at(k);
-    Octet block[D * (D + 1) / 2]{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[F::size], r[D], r2 = splat(tiny);
+    Pack block[D * (D + 1) / 2]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[F::size], r[D], r2 = shape.tiny;
       gather(records, j, other);
       for (int d = 0; d < D; ++d) r[d] = self[F::x + d] - other[F::x + d], r2 += r[d] * r[d];
-      const Octet volume = other[F::mass] * other[F::inv_rho] * w.volume[i];
-      const Octet kk =
-          coefficient * Mean::of(splat(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
+      const Pack volume = other[F::mass] * other[F::inv_rho] * w.volume[i];
+      const Pack kk =
+          coefficient * Mean::of(Pack(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
       w.k[q] = kk;
       for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
       add_block<D>(block, kk, r);
@@ -140,7 +135,7 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
       std::array<double, D> x;
       for (std::size_t d = 0; d < D; ++d) x[d] = p.x[d][i];
       for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
-        double r2 = tiny;
+        double r2 = shape.tiny;
         for (const double c : r) r2 += c * c;
         add_block<D>(wall,
                      coefficient * w.viscosity[i] * w.volume[i] * w.volume[i] * shape.f(shape.ratio(r2)) / r2 * beta,
@@ -165,9 +160,9 @@ void viscous_sweep(Work& w, const Particles& p, const Field& v, Field& force) {
   std::fill_n(w.slim.at(w.pairs.elements(n) - 1), 8, 0.0);
   parallel_for(n, [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
-    Octet sum[D]{};
-    for_each_octet(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Octet other[D], vr{};
+    Pack sum[D]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[D], vr{};
       gather(w.slim, j, other);
       for (std::size_t d = 0; d < D; ++d) vr += (w.slim.at(k)[d] - other[d]) * w.r[d][q];
       for (std::size_t d = 0; d < D; ++d) sum[d] += w.k[q] * vr * w.r[d][q];
@@ -190,7 +185,7 @@ void pair_momentum_rate(Work& w, const Particles& p, const Model& model, bool vi
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;
     using Kernel = std::decay_t<decltype(kernel)>;
-    write_pair_records<D>(w, p, model);
+    write_stresses<D>(w, p);
     std::visit(
         [&](const auto& mean) {
           using Mean = std::decay_t<decltype(mean)>;
@@ -206,12 +201,12 @@ void pair_momentum_rate(Work& w, const Particles& p, const Model& model, bool vi
 }
 
 void pair_coefficients(Work& w, const Particles& p, const Model& model) {
-  w.k.resize(w.pairs.index.size() / octet_size);
+  w.k.resize(w.pairs.index.size() / Pack::lanes);
   for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
-    w.r[d].resize(w.pairs.index.size() / octet_size);
+    w.r[d].resize(w.pairs.index.size() / Pack::lanes);
   dispatch(model, [&](auto dim, const auto& kernel) {
     constexpr int D = decltype(dim)::value;
-    write_pair_records<D>(w, p, model);
+    write_stresses<D>(w, p);
     std::visit(
         [&](const auto& mean) {
           coefficient_sweep<D, std::decay_t<decltype(kernel)>, std::decay_t<decltype(mean)>>(w, p, model);

@@ -13,15 +13,15 @@ struct Pairs {
   std::vector<std::int64_t> offset;
   std::vector<std::int32_t> index;
   Images images;
-  double skin = 0;
   std::int64_t elements(std::int64_t n) const { return n + images.size() + 1; }  // particles, images, the dummy
 };
 
 // True when some particle has moved, or will have within the time `lead`, so far that a pair closer than 2h may be missing.
 bool outdated(const Pairs& pairs, const Particles& particles, int dim, double lead);
 
-// Wraps periodic positions, reorders all particles along the cells, remembers x_built, lists the pairs.
-void rebuild(Pairs& pairs, Particles& particles, const Model& model);
+// Wraps periodic positions, reorders all particles along the cells, remembers x_built, lists the pairs. `travel` is how
+// far a particle may go before the next time; the skin is twice that, within bounds.
+void rebuild(Pairs& pairs, Particles& particles, const Model& model, double travel);
 // The list that belongs to x_built, for a state read from a checkpoint.
 void relist(Pairs& pairs, const Particles& particles, const Model& model);
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/octet.hpp"
+#include "core/simd.hpp"
 
 namespace bagnold::sph {
 
@@ -69,9 +69,9 @@ struct Quartic {
     return at((a == 1) + (b == 1) + (c == 1) + (d == 1), (a == 2) + (b == 2) + (c == 2) + (d == 2));
   }
   // sum += weight r r r r
-  static void add(Octet* sum, const Octet& weight, const Octet (&r)[D]) {
+  static void add(Pack* sum, const Pack& weight, const Pack (&r)[D]) {
     if constexpr (D == 2) {
-      const Octet xx = r[0] * r[0], xz = r[0] * r[1], zz = r[1] * r[1], wx = weight * xx, wz = weight * zz;
+      const Pack xx = r[0] * r[0], xz = r[0] * r[1], zz = r[1] * r[1], wx = weight * xx, wz = weight * zz;
       sum[0] += wx * xx;
       sum[1] += wx * xz;
       sum[2] += wx * zz;
@@ -80,7 +80,7 @@ struct Quartic {
     } else {
       for (int z = 0, q = 0; z <= 4; ++z)
         for (int y = 0; y + z <= 4; ++y, ++q) {
-          Octet monomial = weight;
+          Pack monomial = weight;
           for (int e = 0; e < z; ++e) monomial *= r[2];
           for (int e = 0; e < y; ++e) monomial *= r[1];
           for (int e = 0; e < 4 - y - z; ++e) monomial *= r[0];

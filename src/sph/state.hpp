@@ -15,6 +15,7 @@ struct Particles {
   Field x, v;                     // position, velocity at t
   Field rate;                     // Dv/Dt of the last step; explicit steps start from it
   Field x_built;                  // positions the neighbour list was built at: it decides when to build again
+  double skin = 0;                // of that list, beyond 2h
   std::vector<double> rho, mass;  // bulk density; mass (per unit width planar, of the whole ring axisymmetric)
   std::vector<double> root;       // sqrt(rho_s* - 1), start of the next solution of the cubic
   std::vector<std::int64_t> id;   // survives reordering

@@ -27,8 +27,8 @@ struct Work {
   Field acceleration;                       // gravity and pressure (and viscosity for the minatti2015 step)
   Field force;                              // scratch: viscous force
   // Per pair, as long as positions do not change: separation, f = -W'/r, k/r^2 of the residual viscosity.
-  std::array<std::vector<Octet>, 3> r;
-  std::vector<Octet> f, k;
+  std::array<std::vector<Pack>, 3> r;
+  std::vector<Pack> f, k;
   std::vector<double> quartic;  // 1/2 sum k rrrr/r^2, the distinct components
   Records<8> slim;
   Records<16> wide;

@@ -38,6 +38,7 @@ TEST(Simd, RootsAreExactToOneUnitInTheLastPlace) {
     for (int k = 0; k < Pack::lanes; ++k) {
       EXPECT_NEAR(root[k] / std::sqrt(a[k]), 1, 2.3e-16);
       EXPECT_NEAR(inverse[k] * std::sqrt(a[k]), 1, 4.5e-16);
+      EXPECT_NEAR(reciprocal(a)[k] * a[k], 1, 4.5e-16);
     }
   }
   EXPECT_EQ(sqrt(Pack(0.0))[3], 0);

@@ -6,11 +6,11 @@
 namespace bagnold::laws {
 namespace {
 
-TEST(Octet, ExponentialHasFullPrecisionAndSameBitsInEveryLane) {
+TEST(Pack, ExponentialHasFullPrecisionAndSameBitsInEveryLane) {
   for (double x = 0; x < 600; x += 0.37) {
     const double e = exp_negative(-x);
     EXPECT_NEAR(e / std::exp(-x), 1, 1e-14) << x;
-    EXPECT_EQ(exp_negative(splat(-x))[3], e);
+    EXPECT_EQ(exp_negative(Pack(-x))[3], e);
   }
   for (double x = 1e-12; x < 50; x *= 1.7) EXPECT_NEAR(one_minus_exp_over(x) / (-std::expm1(-x) / x), 1, 1e-12) << x;
 }

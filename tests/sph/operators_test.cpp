@@ -21,7 +21,7 @@ struct Case {
 Case prepare(Model model, int count, double angle, double disorder) {
   Case c{model, block(model, count, angle, disorder), {}};
   c.work.resize(c.state.particles.size(), model.dim);
-  rebuild(c.work.pairs, c.state.particles, model);
+  rebuild(c.work.pairs, c.state.particles, model, 0);
   Particles& p = c.state.particles;
   kinematics(c.work, p, model, model.corrected() ? Kinematics::corrected : Kinematics::pairs, true);
   for (std::size_t i = 0; i < p.mass.size(); ++i) {
@@ -195,7 +195,7 @@ TEST(Adjoint, PressureIsTheAdjointOfTheDivergence) {
     Particles& p = c.state.particles;
     for (double& z : p.x[1]) z += 6.2;
     c.work.resize(p.size(), 2);
-    rebuild(c.work.pairs, p, m);
+    rebuild(c.work.pairs, p, m, 0);
     p.v = velocities(c, 3);
     kinematics(c.work, p, m, Kinematics::corrected, true);
     for (std::size_t i = 0; i < p.mass.size(); ++i) c.work.pressure[i] = random_unit(i, 7), c.work.viscosity[i] = 0;
@@ -218,7 +218,7 @@ TEST(Adjoint, AxisymmetricOperatorsAreAdjointAndSymmetric) {
   Particles& p = c.state.particles;
   for (std::size_t i = 0; i < p.mass.size(); ++i) p.x[0][i] += 6.2, p.x[1][i] += 6.2, p.mass[i] *= 2 * M_PI * p.x[0][i];
   c.work.resize(p.size(), 2);
-  rebuild(c.work.pairs, p, m);
+  rebuild(c.work.pairs, p, m, 0);
   p.v = velocities(c, 3);
   kinematics(c.work, p, m, Kinematics::corrected, true);
   for (std::size_t i = 0; i < p.mass.size(); ++i)
@@ -250,7 +250,7 @@ TEST(Twin, PairSweepsMatchTheEquationsAsPrinted) {
     const auto D = static_cast<std::size_t>(dim);
     for (double& z : p.x[D - 1]) z += 5.5;
     c.work.resize(p.size(), dim);
-    rebuild(c.work.pairs, p, m);
+    rebuild(c.work.pairs, p, m, 0);
     p.v = velocities(c, 3);
     for (std::size_t i = 0; i < p.mass.size(); ++i) p.rho[i] *= 1 + 0.1 * random_unit(i, 9);
     kinematics(c.work, p, m, Kinematics::pairs);

@@ -24,9 +24,8 @@ struct Linear {
   template <class T>
   eos::Cubic<T> cubic(T r, T shear) const {
     const T s = shear * ((phi_max - phi_min) / phi_max), b = 1 - r;
-    const T over = larger(T(-b), constant<T>(0));
-    return {
-        .c2 = -s, .c1 = b, .c0 = -s, .lower = larger(s, T(sqrt(over))), .bulk = 0.5 * (s + sqrt(T(s * s + 4 * over)))};
+    const T over = max(T(-b), T(0));
+    return {.c2 = -s, .c1 = b, .c0 = -s, .lower = max(s, T(sqrt(over))), .bulk = 0.5 * (s + sqrt(T(s * s + 4 * over)))};
   }
 };
 

@@ -26,8 +26,8 @@ struct Rational {
   template <class T>
   eos::Cubic<T> cubic(T r, T shear) const {
     const T s = shear * ((phi_max - phi_min) / phi_max), b = 1 - r;
-    const T e = sqrt(T(larger(T(-b), constant<T>(0))));
-    return {.c2 = constant<T>(0), .c1 = b, .c0 = -s * r, .lower = e, .bulk = e};
+    const T e = sqrt(T(max(T(-b), T(0))));
+    return {.c2 = T(0), .c1 = b, .c0 = -s * r, .lower = e, .bulk = e};
   }
 };
 

@@ -1,6 +1,6 @@
 // The cubic between bulk density and grain density, and its largest root.
 #pragma once
-#include "core/octet.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws::eos {
 
@@ -11,29 +11,20 @@ struct Cubic {
   T c2, c1, c0, lower, bulk;
 };
 
-// True when every lane (or the one number) of `small` does not exceed `large`.
-inline bool all_below(double small, double large) { return small <= large; }
-inline bool all_below(const Octet& small, const Octet& large) {
-  const OctetMask ok = small <= large;
-  std::int64_t both = -1;
-  for (int k = 0; k < octet_size; ++k) both &= ok[k];
-  return both != 0;
-}
-
 // Newton from `guess` (any number). The first step lands right of the root, where convexity makes the rest monotone;
 // it is clipped to an upper bound because f' may be tiny at `lower`. Residual of the root: relative 1e-12 of y.
 template <class T>
 T largest_root(const Cubic<T>& f, T guess) {
-  const T root4 = sqrt(T(sqrt(T(-f.c0))));                   // >= cube root of -c0 where that is < 1
-  const T upper = f.bulk + larger(root4, T(root4 * root4));  // root4^2 >= the cube root where it is > 1
-  T y = larger(smaller(guess, upper), f.lower);
+  const T root4 = sqrt(T(sqrt(T(-f.c0))));                // >= cube root of -c0 where that is < 1
+  const T upper = f.bulk + max(root4, T(root4 * root4));  // root4^2 >= the cube root where it is > 1
+  T y = max(min(guess, upper), f.lower);
   for (int iteration = 0; iteration < 60; ++iteration) {
     const T value = ((y + f.c2) * y + f.c1) * y + f.c0;
     const T slope = (3 * y + 2 * f.c2) * y + f.c1;
-    const T next = larger(smaller(T(y - value / larger(slope, constant<T>(1e-300))), upper), f.lower);
-    const T change = larger(T(next - y), T(y - next));
+    const T next = max(min(T(y - value * reciprocal(max(slope, T(1e-300)))), upper), f.lower);
+    const T change = max(T(next - y), T(y - next));
     y = next;
-    if (all_below(change, T(1e-12 * y + 1e-150))) break;
+    if (!any(T(1e-12 * y + 1e-150) < change)) break;
   }
   return y;
 }

@@ -1,6 +1,6 @@
 // Friction from the flow rule with the exponential stopping height (eqs 38, 39).
 #pragma once
-#include "core/octet.hpp"
+#include "core/exponential.hpp"
 #include "laws/friction/coulomb.hpp"
 
 namespace bagnold::laws {

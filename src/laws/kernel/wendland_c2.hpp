@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/fields.hpp"
-#include "core/octet.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws::kernel {
 
@@ -18,13 +18,13 @@ struct WendlandC2 {
   // W h^D / norm and -(dW/dR)/R h^D / norm; zero beyond R = 2.
   template <class T>
   static T value(T R) {
-    const T t = larger(T(2 - R), constant<T>(0)), t2 = t * t;
+    const T t = max(T(2 - R), T(0)), t2 = t * t;
     return (1 + 2 * R) * t2 * t2;
   }
   template <class T>
   static T slope(T R) {
-    const T t = larger(T(2 - R), constant<T>(0));
-    return 10 * t * t * t;
+    const T t = max(T(2 - R), T(0));
+    return (10 * t) * (t * t);
   }
 };
 

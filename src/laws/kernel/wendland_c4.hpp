@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/fields.hpp"
-#include "core/octet.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws::kernel {
 
@@ -17,12 +17,12 @@ struct WendlandC4 {
   static double norm(int dimensions) { return dimensions == 2 ? 9 / (4 * M_PI) : 495 / (256 * M_PI); }
   template <class T>
   static T value(T R) {
-    const T t = larger(T(1 - 0.5 * R), constant<T>(0)), t2 = t * t;
+    const T t = max(T(1 - 0.5 * R), T(0)), t2 = t * t;
     return t2 * t2 * t2 * (35.0 / 12 * R * R + 3 * R + 1);
   }
   template <class T>
   static T slope(T R) {  // dW/dR = -(7/6) a (1 - R/2)^5 R (10 R + 4)
-    const T t = larger(T(1 - 0.5 * R), constant<T>(0)), t2 = t * t;
+    const T t = max(T(1 - 0.5 * R), T(0)), t2 = t * t;
     return (7.0 / 6) * t2 * t2 * t * (10 * R + 4);
   }
 };

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/fields.hpp"
-#include "core/octet.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws::mean {
 

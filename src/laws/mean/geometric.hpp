@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/fields.hpp"
-#include "core/octet.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws::mean {
 

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/fields.hpp"
-#include "core/octet.hpp"
+#include "core/numeric.hpp"
 
 namespace bagnold::laws::mean {
 
@@ -14,7 +14,7 @@ struct Harmonic {
   static constexpr auto fields() { return std::tuple<>{}; }
   template <class T>
   static T of(T a, T b) {
-    return 2 * a * b / larger(T(a + b), constant<T>(1e-300));
+    return 2 * a * b * reciprocal(max(T(a + b), T(1e-300)));
   }
 };
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string_view>
 
+#include "core/exponential.hpp"
 #include "core/fields.hpp"
-#include "core/octet.hpp"
 
 namespace bagnold::laws::regularisation {
 
@@ -25,10 +25,9 @@ struct Minatti2015 {
   // eta [Pa s] from yield stress tau_y [Pa], viscosity beyond yield eta0 [Pa s] and shear rate [1/s].
   template <class T>
   T viscosity(T tau_y, T eta0, T gamma) const {
-    const T x = m0 * gamma;
-    const T g =
-        tau_y * m0 * one_minus_exp_over(x) - exp_negative(T(-x)) * eta0 * (tau0 - tau_y) / (tau0 + eta0 * gamma);
-    return eta0 + larger(g, constant<T>(0));
+    const T x = m0 * gamma, e = exp_negative(T(-x));
+    const T g = tau_y * m0 * one_minus_exp_over(x, e) - e * eta0 * (tau0 - tau_y) * reciprocal(T(tau0 + eta0 * gamma));
+    return eta0 + max(g, T(0));
   }
 };
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string_view>
 
+#include "core/exponential.hpp"
 #include "core/fields.hpp"
-#include "core/octet.hpp"
 
 namespace bagnold::laws::regularisation {
 

@@ -1,0 +1,198 @@
+// Particle-steps per second of the explicit continuum model as the paper has it (minatti2015: mass, momentum, mu(i),
+// phi(i), the cubic, regularised viscosity; h/dp = 1.3) in the incline with its steady velocity profile and disordered
+// particles, from 2 500 to 1 000 000 of them, and with two threads; then row 3 of table 3, explicit against implicit.
+// CPU time of one thread, best of rounds in turn; wall time for threads. Appends to performance-sph.csv.
+//
+//   bench_sph          everything, row 3 for the first 0.03 s
+//   bench_sph END      row 3 only, up to t = END (0.8 is all of it; the explicit run takes minutes)
+#include <fmt/core.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "core/random.hpp"
+#include "core/version.hpp"
+#include "scenario/continuum_column.hpp"
+#include "scenario/inclined_plane.hpp"
+#include "sph/algorithm.hpp"
+#include "sph/observe.hpp"
+
+namespace {
+using namespace bagnold;
+using namespace bagnold::sph;
+
+struct Simulation {
+  Model model;
+  State state;
+  Work work;
+};
+
+double cpu() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return static_cast<double>(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
+}
+double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+std::string host() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+// rows x rows particles, moved at random by up to a tenth of a spacing, sliding at their steady speed.
+Simulation incline(int rows) {
+  Simulation s;
+  s.model.material.rheology = laws::rheology::MuI{20.90, 32.76, 0.279};
+  s.model.material.grain_diameter = 5e-3;
+  s.model.material.eos = laws::eos::CompressibleGrains{800, 1.5e-5};
+  s.model.material.regularisation = laws::regularisation::Minatti2015{190, 1};
+  const scenario::InclinedPlane plane{.spacing = 0.1 / rows};
+  set_geometry(plane, s.model);
+  s.state.particles = make_particles(plane, s.model);
+  const auto flow = steady_flow(plane, s.model);
+  Particles& p = s.state.particles;
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    for (std::size_t d : {0, 1})
+      p.x[d][i] += 0.2 * plane.spacing *
+                   (random::uniform(1, random::Stream::perturbation, i, static_cast<std::uint32_t>(d)) - 0.5);
+    p.v[0][i] = flow.velocity(p.x[1][i]);
+  }
+  initialise(s.state, s.work, s.model);
+  return s;
+}
+
+void advance(Simulation& s, std::int64_t steps) {
+  for (std::int64_t k = 0; k < steps; ++k) step(s.state, s.work, s.model);
+}
+
+// Particle-steps per second of `clock` over `steps`.
+template <class Clock>
+double speed(Simulation& s, std::int64_t steps, Clock&& clock) {
+  const double before = clock();
+  advance(s, steps);
+  return static_cast<double>(s.state.particles.size() * steps) / (clock() - before);
+}
+
+struct Row {
+  std::int64_t particles;
+  double speed;
+};
+
+std::vector<Row> sizes() {
+  struct Size {
+    Simulation s;
+    std::int64_t steps;
+    int rounds;
+    double best = 0;
+  };
+  std::vector<Size> all;
+  for (const auto& [rows, steps, rounds] : {std::array{50, 800, 6}, {100, 200, 6}, {316, 60, 3}, {1000, 60, 1}})
+    all.push_back({incline(rows), steps, rounds});
+  for (Size& size : all) advance(size.s, 20);
+  for (int round = 0; round < 6; ++round)
+    for (Size& size : all)
+      if (round < size.rounds) size.best = std::max(size.best, speed(size.s, size.steps, cpu));
+  std::vector<Row> rows;
+  for (const Size& size : all) rows.push_back({size.s.state.particles.size(), size.best});
+  return rows;
+}
+
+// Wall time of one thread over that of two, best of rounds in turn.
+double two_threads() {
+  Simulation s = incline(316);
+  double best[2]{};
+  for (int round = 0; round < 4; ++round)
+    for (const int threads : {1, 2}) {
+      set_threads(threads);
+      advance(s, 2);
+      best[threads - 1] = std::max(best[threads - 1], speed(s, 50, wall));
+    }
+  set_threads(1);
+  return best[1] / best[0];
+}
+
+// Row 3 of table 3, axisymmetric, improved formulation: cases/column-3.toml.
+Simulation row3(Stepping stepping) {
+  Simulation s;
+  s.model.viscous = laws::viscous::Variational{.bulk = 2};
+  s.model.stepping = stepping;
+  s.model.numerics = {.cfl = 0.4,
+                      .shifting = 10,
+                      .volume_correction = 1,
+                      .density_diffusion = 0.03,
+                      .base_friction = 1,
+                      .cg_tolerance = 3e-4};
+  const scenario::ContinuumColumn column;
+  const auto geometry = scenario::ColumnGeometry::axisymmetric;
+  set_geometry(column, geometry, s.model);
+  s.state.particles = make_particles(column, geometry, s.model);
+  initialise(s.state, s.work, s.model);
+  return s;
+}
+
+// Cost and front at eight times up to `end`.
+struct Solution {
+  std::array<double, 8> front{}, evaluations{};
+  double seconds = 0;
+  std::int64_t steps = 0;
+};
+
+Solution solve_row3(Stepping stepping, double end) {
+  Simulation s = row3(stepping);
+  Solution out;
+  for (std::size_t k = 0; k < out.front.size(); ++k) {
+    const double before = cpu();
+    while (s.state.time < end * static_cast<double>(k + 1) / 8) step(s.state, s.work, s.model);
+    out.seconds += cpu() - before;
+    refresh(s.state, s.work, s.model);
+    out.front[k] = find_front(s.state, s.work, s.model).connected;
+    out.evaluations[k] = static_cast<double>(s.work.applications);
+  }
+  out.steps = s.state.step;
+  return out;
+}
+
+void print_row3(double end) {
+  const Solution implicit = solve_row3(Stepping::implicit, end), plain = solve_row3(Stepping::explicit_euler, end);
+  fmt::print("row 3 of table 3, viscous force evaluations and front:\n");
+  for (std::size_t k = 0; k < 8; ++k)
+    fmt::print("  t = {:6.4f} s: implicit {:7.0f}, {:.5f} m; explicit {:8.0f}, {:.5f} m; {:.1f} times, {:.2f} %\n",
+               end * static_cast<double>(k + 1) / 8, implicit.evaluations[k], implicit.front[k], plain.evaluations[k],
+               plain.front[k], plain.evaluations[k] / implicit.evaluations[k],
+               100 * (implicit.front[k] / plain.front[k] - 1));
+  fmt::print("  implicit {:.2f} s, {} steps; explicit {:.2f} s, {} steps; {:.1f} times faster\n", implicit.seconds,
+             implicit.steps, plain.seconds, plain.steps, plain.seconds / implicit.seconds);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  set_threads(1);
+  if (argc > 1) return print_row3(std::stod(argv[1])), 0;
+  std::ofstream csv("performance-sph.csv", std::ios::app);
+  if (csv.tellp() == 0) csv << "host,commit,what,value\n";
+  const auto record = [&](const std::string& what, double value) {
+    csv << fmt::format("{},{},{},{:.4g}\n", host(), git_hash(), what, value);
+  };
+  double fastest = 0, slowest = std::numeric_limits<double>::infinity();
+  for (const Row& row : sizes()) {
+    fmt::print("{:8d} particles: {:5.2f} M particle-steps/s and core\n", row.particles, 1e-6 * row.speed);
+    record(fmt::format("sph_particle_steps_per_s_{}", row.particles), row.speed);
+    fastest = std::max(fastest, row.speed), slowest = std::min(slowest, row.speed);
+  }
+  const double scaling = two_threads();
+  fmt::print("slowest size {:.2f} times the cost per particle of the fastest; two threads {:.2f} times one at 99856\n",
+             fastest / slowest, scaling);
+  record("sph_two_threads", scaling);
+  print_row3(0.03);
+}
