@@ -156,7 +156,7 @@ Solution solve_row3(Stepping stepping, double end) {
     out.seconds += cpu() - before;
     refresh(s.state, s.work, s.model);
     out.front[k] = find_front(s.state, s.work, s.model).connected;
-    out.evaluations[k] = static_cast<double>(s.work.applications);
+    out.evaluations[k] = static_cast<double>(s.state.force_evaluations);
   }
   out.steps = s.state.step;
   return out;

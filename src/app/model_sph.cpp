@@ -17,7 +17,8 @@
 namespace bagnold::app {
 namespace {
 
-constexpr double steady_rate = 1e-3;  // relative change of the mean velocity in a second below which a flow is steady
+constexpr double steady_rate = 1e-3;    // relative change of the mean velocity in a second below which a flow is steady
+constexpr double steady_window = 0.25;  // s, over which it is taken, whatever is written when
 
 class SphModel final : public Model {
  public:
@@ -37,6 +38,7 @@ class SphModel final : public Model {
     while (state_.time < until && !stop_requested()) {
       sph::step(state_, work_, in_.model);
       particle_steps_ += static_cast<double>(state_.particles.size());
+      watch_steadiness();
     }
   }
 
@@ -72,14 +74,8 @@ class SphModel final : public Model {
     max_i_ = std::max(max_i_, max_inertial_number(state_, work_, in_.model));
     const double energy = kinetic_energy(state_, in_.model);
     if (on_plane()) {
-      const double mean = mean_velocity();
-      if (steady_time_ == 0 && state_.time > last_time_ && mean > 0 &&
-          std::abs(mean - last_mean_) < steady_rate * mean * (state_.time - last_time_))
-        steady_time_ = state_.time;
-      last_mean_ = mean;
-      last_time_ = state_.time;
       const auto& u = state_.particles.v[0];
-      return {state_.time, state_.dt, energy, mean, *std::max_element(u.begin(), u.end()), max_i_};
+      return {state_.time, state_.dt, energy, mean_velocity(), *std::max_element(u.begin(), u.end()), max_i_};
     }
     const sph::Front front = find_front(state_, work_, in_.model);
     return {state_.time, state_.dt, energy, front.connected, front.raw, front.height, max_i_};
@@ -156,6 +152,7 @@ class SphModel final : public Model {
     const double max_i = std::max(max_i_, max_inertial_number(state_, work_, in_.model));
     summary["particles"] = state_.particles.size();
     summary["particle_steps_per_s"] = wall_s > 0 ? particle_steps_ / wall_s : NAN;
+    summary["force_evaluations"] = state_.force_evaluations;
     summary["max_inertial_number"] = max_i;
     if (on_plane()) {
       const auto flow = steady_flow(in_.plane, in_.model);
@@ -205,6 +202,14 @@ class SphModel final : public Model {
   };
   bool on_plane() const { return in_.scenario == "inclined_plane"; }
   double mean_velocity() const { return momentum(state_, in_.model)[0] / total_mass(state_); }
+  void watch_steadiness() {
+    if (!on_plane() || state_.time < last_time_ + steady_window) return;
+    const double mean = mean_velocity(), elapsed = state_.time - last_time_;
+    if (steady_time_ == 0 && mean > 0 && std::abs(mean - last_mean_) < steady_rate * mean * elapsed)
+      steady_time_ = state_.time;
+    last_mean_ = mean;
+    last_time_ = state_.time;
+  }
   // Fresh fields and three-dimensional positions; an infinite inertial number (no pressure) is written as NaN.
   Points points() {
     refresh(state_, work_, in_.model);

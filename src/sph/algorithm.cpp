@@ -104,6 +104,7 @@ void midpoint_step(State& state, Work& w, const Model& model, double travel) {
   kinematics(w, p, model, Kinematics::pairs);
   state.max_kinematic_viscosity = constitutive(w, p, model);
   pair_momentum_rate(w, p, model, true);
+  ++w.applications;
   std::swap(p.rate, w.acceleration);
   half_step();
 }
@@ -209,10 +210,12 @@ void step(State& state, Work& w, const Model& model) {
   }
   state.dt = dt;
   const double travel = list_steps * speed * dt;
+  const std::int64_t applications = w.applications;
   if (model.stepping == Stepping::minatti2015)
     midpoint_step(state, w, model, travel);
   else
     sequential_step(state, w, model, travel);
+  state.force_evaluations += w.applications - applications;
   state.time += dt;
   ++state.step;
 }

@@ -32,7 +32,7 @@ struct PairShape {
   }
   template <class T>
   T ratio(T r2, T inv_r) const {
-    return r2 * inv_r * inv_h;
+    return (r2 * inv_h) * inv_r;
   }
   template <class T>
   T ratio(T r2) const {
@@ -40,11 +40,11 @@ struct PairShape {
   }
   template <class T>
   T f(T R) const {
-    return slope_scale * Kernel::slope(R);
+    return Kernel::slope(T(slope_scale), R);
   }
   template <class T>
-  T weighted_f(T weight, T R) const {  // weight f, in a short chain of products
-    return (slope_scale * weight) * Kernel::slope(R);
+  T weighted_f(T weight, T R) const {  // weight f
+    return Kernel::slope(T(slope_scale * weight), R);
   }
   template <class T>
   T w(T R) const {

@@ -67,7 +67,7 @@ int solve(Work& w, State& state, const Model& model, double dt) {
   const double g_dt = model.numerics.cg_tolerance * std::max(model.gravity_norm(), 1e-12) * dt,
                limit = mass * g_dt * g_dt;
   int iterations = 0;
-  while (rz > limit) {
+  while (!(rz <= limit)) {  // also for NaN
     viscous_force(w, p, model, v, q);
     const double curvature = parallel_sum<double>(n, [&](std::int64_t k) {
       const auto i = static_cast<std::size_t>(k);

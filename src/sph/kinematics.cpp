@@ -16,7 +16,8 @@ constexpr double blend_from = 0.3, blend_to = 0.5;
 template <int D>
 struct Sums {
   double density;                       // sum m_j f (v_ij . r_ij)
-  Matrix<D> S;                          // sum A_j f v_ij r_ij
+  Matrix<D> S;                          // sum A_j f v_ij r_ij, corrected
+  std::array<double, D*(D + 1) / 2> E;  // S + S^T with its diagonal halved, upper triangle, as printed
   std::array<double, D*(D + 1) / 2> M;  // sum A_j f r r, upper triangle
   std::array<double, D> imbalance;
   double concentration;
@@ -74,7 +75,7 @@ void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begi
   const auto& records = pair_records<D>(w);
   for (std::int64_t i = begin; i < end; ++i, ++sums) {
     const double* self = records.at(i);
-    Pack density{}, S[D * D]{}, M[triangle + D + 1]{};  // M, imbalance, concentration
+    Pack density{}, S[D * D]{}, E[triangle]{}, M[triangle + D + 1]{};  // M, imbalance, concentration
     for_each_pack(w.pairs, i, [&](const std::int32_t* j, std::size_t q) {
       Pack other[F::inv_rho + 1], r[D], v[D], r2 = shape.tiny, vr{};
       gather(records, j, other);
@@ -84,22 +85,33 @@ void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begi
         r2 += r[d] * r[d];
         vr += v[d] * r[d];
       }
-      const Pack R = shape.ratio(r2), mf = shape.weighted_f(other[F::mass], R),
-                 af = printed ? mf * other[F::inv_rho] : mf;
-      if constexpr (printed) density += mf * vr;
-      if constexpr (what == Kinematics::corrected) {
+      const Pack R = shape.ratio(r2);
+      if constexpr (!gradients) {
+        density += shape.weighted_f(other[F::mass] * vr, R);
+        return;
+      }
+      const Pack mf = shape.weighted_f(other[F::mass], R);
+      if constexpr (printed) {  // the kernel last: all else is ready before it
+        density += mf * vr;
+        for (int d = 0; d < D; ++d) v[d] *= other[F::inv_rho];
+        for (int a = 0, m = 0; a < D; ++a)
+          for (int b = a; b < D; ++b, ++m) E[m] += mf * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
+      } else {
+        add_product<D>(S, mf, v, r);
         for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
         w.f[q] = shape.f(R);
       }
-      if constexpr (gradients) add_product<D>(S, af, v, r);
       if constexpr (moments) {
+        const Pack area = printed ? other[F::mass] * other[F::inv_rho] : other[F::mass],
+                   af = printed ? mf * other[F::inv_rho] : mf;
         add_square<D>(M, af, r);
         for (int d = 0; d < D; ++d) M[triangle + d] += af * r[d];
-        M[triangle + D] += (printed ? other[F::mass] * other[F::inv_rho] : other[F::mass]) * shape.w(R);
+        M[triangle + D] += area * shape.w(R);
       }
     });
     if constexpr (printed) sums->density = lane_sum(density);
-    if constexpr (gradients) lane_sums(S, sums->S.data());
+    if constexpr (gradients && printed) lane_sums(E, sums->E.data());
+    if constexpr (!printed) lane_sums(S, sums->S.data());
     if constexpr (moments) {
       double m[triangle + D + 1];
       lane_sums(M, m);
@@ -123,8 +135,10 @@ void add_ghosts(Sums<D>& sums, const PairShape<D, Kernel>& shape, const Model& m
     sums.density += mass * f * vr;
     for (std::size_t a = 0, m = 0; a < D; ++a) {
       sums.imbalance[a] += area * f * r[a];
-      for (std::size_t b = 0; b < D; ++b) sums.S[a * D + b] += area * f * beta * v[a] * r[b];
-      for (std::size_t b = a; b < D; ++b, ++m) sums.M[m] += area * f * r[a] * r[b];
+      for (std::size_t b = a; b < D; ++b, ++m) {
+        sums.E[m] += area * f * beta * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
+        sums.M[m] += area * f * r[a] * r[b];
+      }
     }
     sums.concentration += area * shape.w(R);
   });
@@ -140,6 +154,15 @@ double shear_rate(const Matrix<D>& L, double hoop) {
       sum += e * e;
     }
   return std::sqrt(2 * sum);
+}
+
+// The same from S + S^T with its diagonal halved.
+template <int D>
+double shear_rate(const std::array<double, D*(D + 1) / 2>& E) {
+  double sum = 0;
+  for (std::size_t a = 0, m = 0; a < D; ++a)
+    for (std::size_t b = a; b < D; ++b, ++m) sum += (a == b ? 2 : 1) * E[m] * E[m];
+  return std::sqrt(sum);
 }
 
 template <int D>
@@ -173,7 +196,7 @@ void store(Work& w, const Particles& p, const Model& model, std::size_t i, const
       w.shear_rate[i] = shear_rate<D>(L, hoop);
     }
   }
-  if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate<D>(s.S, hoop);
+  if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate<D>(s.E);
 }
 
 template <int D, class Kernel, Kinematics what, bool moments>

@@ -128,7 +128,7 @@ double lattice_concentration(const Model& model) {
     for (int a = -reach; a <= reach; ++a)
       for (int b = -reach; b <= reach; ++b)
         for (int c = D == 3 ? -reach : 0; c <= (D == 3 ? reach : 0); ++c)
-          sum += cell * shape.w(shape.ratio(model.spacing * model.spacing * (a * a + b * b + c * c)));
+          sum += cell * shape.w(shape.ratio(shape.tiny + model.spacing * model.spacing * (a * a + b * b + c * c)));
   });
   return sum;
 }

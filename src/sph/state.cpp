@@ -8,7 +8,7 @@ std::vector<NamedArray> named_arrays(State& state) {
                                  {"step", &state.step}, {"max_kinematic_viscosity", &state.max_kinematic_viscosity},
                                  {"rho", &p.rho},       {"mass", &p.mass},
                                  {"root", &p.root},     {"id", &p.id},
-                                 {"skin", &p.skin}};
+                                 {"skin", &p.skin},     {"force_evaluations", &state.force_evaluations}};
   const std::array<std::pair<const char*, Field*>, 4> vectors{
       {{"x", &p.x}, {"v", &p.v}, {"rate", &p.rate}, {"x_built", &p.x_built}}};
   for (const auto& [name, vector] : vectors)

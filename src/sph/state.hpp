@@ -28,6 +28,7 @@ struct State {
   double dt = 0;                       // of the last step
   double max_kinematic_viscosity = 0;  // max eta/rho of the last step: the explicit viscous limit of the next
   std::int64_t step = 0;
+  std::int64_t force_evaluations = 0;  // of the viscous force, on all particles: one an explicit step
 };
 
 // Visits every array of an exact checkpoint. Unused directions are empty.

@@ -33,8 +33,8 @@ struct Work {
   Records<8> slim;
   Records<16> wide;
   Records<32> broad;
+  std::int64_t applications = 0;  // of the viscous operator, in this process
   // Of the last implicit solve.
-  std::int64_t applications = 0;  // of the viscous operator, all steps
   Field cg_r, cg_z, cg_p, cg_q;
   std::vector<double> preconditioner;
   void resize(std::int64_t n, int dim);

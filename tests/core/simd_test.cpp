@@ -44,6 +44,18 @@ TEST(Simd, RootsAreExactToOneUnitInTheLastPlace) {
   EXPECT_EQ(sqrt(Pack(0.0))[3], 0);
 }
 
+TEST(Simd, LaneSumsAreTheSumsOfTheLanes) {
+  const Pack packs[5] = {numbers(1, -3, 5), numbers(2, 0.1, 4), numbers(3, -1, 1), numbers(4, 0, 9), numbers(5, -9, 0)};
+  double sums[5];
+  lane_sums(packs, sums);
+  for (int p = 0; p < 5; ++p) {
+    double plain = 0;
+    for (int k = 0; k < Pack::lanes; ++k) plain += packs[p][k];
+    EXPECT_NEAR(sums[p], plain, 1e-14 * 80);
+    EXPECT_NEAR(lane_sum(packs[p]), plain, 1e-14 * 80);
+  }
+}
+
 TEST(Simd, ComparisonsChooseLanes) {
   const auto a = numbers(3, -1, 1), b = numbers(4, -1, 1);
   const auto chosen = select(a < b, a, Pack(7));

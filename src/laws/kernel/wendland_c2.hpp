@@ -15,16 +15,16 @@ struct WendlandC2 {
   static constexpr std::string_view source = "Wendland 1995; Minatti & Paris 2015, eq. 20";
   static constexpr auto fields() { return std::tuple<>{}; }
   static double norm(int dimensions) { return dimensions == 2 ? 7 / (64 * M_PI) : 21 / (256 * M_PI); }
-  // W h^D / norm and -(dW/dR)/R h^D / norm; zero beyond R = 2.
+  // W h^D / norm and -(dW/dR)/R h^D / norm, the latter times a weight (in a short chain of products); zero beyond R = 2.
   template <class T>
   static T value(T R) {
     const T t = max(T(2 - R), T(0)), t2 = t * t;
     return (1 + 2 * R) * t2 * t2;
   }
   template <class T>
-  static T slope(T R) {
+  static T slope(T weight, T R) {
     const T t = max(T(2 - R), T(0));
-    return (10 * t) * (t * t);
+    return (t * t) * (t * (10 * weight));
   }
 };
 

@@ -21,9 +21,9 @@ struct WendlandC4 {
     return t2 * t2 * t2 * (35.0 / 12 * R * R + 3 * R + 1);
   }
   template <class T>
-  static T slope(T R) {  // dW/dR = -(7/6) a (1 - R/2)^5 R (10 R + 4)
+  static T slope(T weight, T R) {  // dW/dR = -(7/6) a (1 - R/2)^5 R (10 R + 4)
     const T t = max(T(1 - 0.5 * R), T(0)), t2 = t * t;
-    return (7.0 / 6) * t2 * t2 * t * (10 * R + 4);
+    return (t2 * t2) * (t * ((7.0 / 6 * weight) * (10 * R + 4)));
   }
 };
 
