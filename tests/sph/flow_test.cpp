@@ -62,22 +62,28 @@ Model improved(Model m) {
 const scenario::InclinedPlane small_plane{.angle_deg = 25, .height = 0.05, .length = 0.05, .spacing = 5e-3};
 const scenario::ContinuumColumn small_column{.radius = 0.03, .height = 0.03, .spacing = 3e-3};
 
+// Sound keeps swinging through the tank (up to a tenth of the pressure), so pressures are averaged over a while.
 TEST(Rest, TankBelowTheFrictionAngleHoldsHydrostaticPressure) {
   for (const bool better : {false, true}) {
     Simulation r = start(scenario::InclinedPlane{.angle_deg = 0, .height = 0.05, .length = 0.05, .spacing = 5e-3},
                          better ? improved(incline_model()) : incline_model());
-    advance(r, 0.2);
-    refresh(r.state, r.work, r.model);
     const Particles& p = r.state.particles;
-    double error = 0, scale = 0, speed = 0;
-    for (std::size_t i = 0; i < p.mass.size(); ++i) {
-      const double exact = 0.6 * 800 * 9.81 * (0.05 - p.x[1][i]);
-      error += (r.work.pressure[i] - exact) * (r.work.pressure[i] - exact);
-      scale += exact * exact;
-      speed = std::max(speed, std::hypot(p.v[0][i], p.v[1][i]));
+    std::vector<double> difference(p.mass.size(), 0), exact = difference;
+    double speed = 0;
+    for (int k = 0; k < 60; ++k) {
+      advance(r, 0.08 + 0.002 * k);
+      refresh(r.state, r.work, r.model);
+      for (std::size_t i = 0; i < p.mass.size(); ++i) {
+        const auto id = static_cast<std::size_t>(p.id[i]);
+        exact[id] += 0.6 * 800 * 9.81 * (0.05 - p.x[1][i]);
+        difference[id] += r.work.pressure[i] - 0.6 * 800 * 9.81 * (0.05 - p.x[1][i]);
+        speed = std::max(speed, std::hypot(p.v[0][i], p.v[1][i]));
+      }
     }
+    double error = 0, scale = 0;
+    for (std::size_t i = 0; i < exact.size(); ++i) error += difference[i] * difference[i], scale += exact[i] * exact[i];
     EXPECT_LT(std::sqrt(error / scale), better ? 0.03 : 0.08) << better;
-    EXPECT_LT(speed, 5e-3) << better;  // the pair model never quite stops settling at the surface
+    EXPECT_LT(speed, 2e-2) << better;  // sound; and the pair model never quite stops settling at the surface
   }
 }
 
