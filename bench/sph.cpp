@@ -7,6 +7,7 @@
 //   bench_sph END      row 3 only, up to t = END (0.8 is all of it; the explicit run takes minutes)
 #include <fmt/core.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -107,18 +108,35 @@ std::vector<Row> sizes() {
   return rows;
 }
 
-// Wall time of one thread over that of two, best of rounds in turn.
-double two_threads() {
+// CPU time of the busiest thread. Waiting counts unless OMP_WAIT_POLICY=passive.
+double busiest() {
+  double most = 0;
+#pragma omp parallel reduction(max : most)
+  {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    most = static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  return most;
+}
+
+// One thread's time over that of two, best of rounds in turn: by the wall clock, which other load spoils, and by the CPU
+// time of the busier thread, which leaves out what one waits for.
+std::array<double, 2> two_threads() {
   Simulation s = incline(316);
-  double best[2]{};
+  std::array<std::array<double, 2>, 2> best{};
   for (int round = 0; round < 4; ++round)
     for (const int threads : {1, 2}) {
       set_threads(threads);
       advance(s, 2);
-      best[threads - 1] = std::max(best[threads - 1], speed(s, 50, wall));
+      const double before = busiest(), from = wall();
+      advance(s, 50);
+      auto& b = best[static_cast<std::size_t>(threads - 1)];
+      b[0] = std::max(b[0], 1 / (wall() - from));
+      b[1] = std::max(b[1], 1 / (busiest() - before));
     }
   set_threads(1);
-  return best[1] / best[0];
+  return {best[1][0] / best[0][0], best[1][1] / best[0][1]};
 }
 
 // Row 3 of table 3, axisymmetric, improved formulation: cases/column-3.toml.
@@ -190,9 +208,12 @@ int main(int argc, char** argv) {
     record(fmt::format("sph_particle_steps_per_s_{}", row.particles), row.speed);
     fastest = std::max(fastest, row.speed), slowest = std::min(slowest, row.speed);
   }
-  const double scaling = two_threads();
-  fmt::print("slowest size {:.2f} times the cost per particle of the fastest; two threads {:.2f} times one at 99856\n",
-             fastest / slowest, scaling);
-  record("sph_two_threads", scaling);
+  const auto scaling = two_threads();
+  fmt::print(
+      "slowest size {:.2f} times the cost per particle of the fastest; 99856 particles on two threads {:.2f} times "
+      "one, "
+      "{:.2f} by CPU time of the busier thread\n",
+      fastest / slowest, scaling[0], scaling[1]);
+  record("sph_two_threads", scaling[0]);
   print_row3(0.03);
 }
