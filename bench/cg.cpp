@@ -1,16 +1,16 @@
-// Cost of coarse-graining a chute flow while it runs: CPU time per grain of a sample, of 25 steps that are interrupted for it
-// (half a collision time) and of 25 steps out of 50 in a row. `added` is what sampling every 25 steps adds to the run.
+// What sampling depth profiles every 25 steps (half a collision time) adds to a chute flow, for the fast engine and for the
+// plain one: two copies of the same developed flow advance in turn, one of them watched. CPU time per grain and 25 steps;
+// `added` is the median over the rounds of watched/alone - 1, which a busy machine disturbs least.
 #include <benchmark/benchmark.h>
 
 #include <ctime>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <vector>
 
 #include "cg/from_dem.hpp"
+#include "chute_flow.hpp"
 #include "core/parallel.hpp"
-#include "core/random.hpp"
 #include "dem/algorithm.hpp"
 #include "dem/contacts.hpp"
 
@@ -25,75 +25,61 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-dem::ContactLaws chute_laws() {
-  laws::Linear normal;
-  normal.collision_time = 0.005;
-  normal.restitution = 0.88;
-  return dem::compile(dem::uniform_model({"grain"}, {normal, laws::LinearHistory{}, laws::NoRollingResistance{}}), 0.5);
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
 }
 
-// 4 000 grains over a dense layer of fixed ones, sheared from a lattice for a few time units.
-dem::DemState flow(const dem::ContactLaws& laws) {
-  dem::DemState s;
-  s.box = {{0, 0, 0}, {20, 10, 1}, {true, true, false}};
-  s.gravity = {std::sin(24 * std::numbers::pi / 180), 0, -std::cos(24 * std::numbers::pi / 180)};
-  s.dt = 1e-4;
-  s.reorder_every = 2000;
-  std::uint64_t item = 0;
-  for (int k = 0; k <= 20; ++k)
-    for (int j = 0; j < (k < 20 ? 10 : 15); ++j)
-      for (int i = 0; i < (k < 20 ? 20 : 30); ++i, ++item) {
-        const auto u = [&](std::uint32_t draw) {
-          return random::uniform(2, random::Stream::perturbation, item, draw) - 0.5;
-        };
-        const bool fixed = k == 20;
-        const double z = fixed ? 0 : k + 1;
-        const double spacing = fixed ? 2.0 / 3 : 1;
-        s.grains.x.push_back({spacing * i + 0.04 * u(0), spacing * j + 0.04 * u(1), z + (fixed ? 0.2 : 0.04) * u(2)});
-        s.grains.v.push_back(fixed ? Vec3{} : Vec3{0.25 * z + 0.5 * u(3), 0.5 * u(4), 0.5 * u(5)});
-        s.grains.omega.push_back({});
-        s.grains.diameter.push_back(1);
-        s.grains.mass.push_back(1);
-        s.grains.inertia.push_back(0.1);
-        s.grains.species.push_back(0);
-        s.grains.id.push_back(static_cast<std::int64_t>(item));
-        s.grains.flowing += !fixed;
-      }
-  dem::prepare(s, laws);
-  dem::advance(s, laws, 30000);
-  return s;
-}
-
-void streaming(benchmark::State& bench) {
+// `advance(state, observer)`: 20 samples long, watched if there is an observer.
+template <class Advance>
+void compare(benchmark::State& bench, int copies, const Advance& advance) {
   set_threads(1);
-  const auto laws = chute_laws();
-  dem::DemState s = flow(laws);
-  cg::BlockedProfile profile(laws::CgGaussian{0.25}, 0.0625, s.box, 40000);
-  const auto timed = [](double& total, auto&& work) {
+  const auto laws = bench::linear_laws();
+  dem::DemState watched = bench::make_state(bench::developed_flow(), copies, 1);
+  dem::prepare(watched, laws);
+  dem::advance(watched, laws, 2000);
+  dem::DemState alone = watched;
+  cg::ProfileObserver observer({.kernel = laws::CgGaussian{0.25},
+                                .first_step = watched.step,
+                                .last_step = watched.step + 25 * 40000,
+                                .every = steps_per_sample},
+                               watched.box);
+  const double per_sample = 1e9 / static_cast<double>(20 * watched.grains.flowing);
+  const auto timed = [&](dem::DemState& state, cg::ProfileObserver* by) {
     const double begin = cpu_seconds();
-    work();
-    total += cpu_seconds() - begin;
+    advance(state, laws, by);
+    return (cpu_seconds() - begin) * per_sample;
   };
-  double undisturbed = 1e9, stepping = 1e9, sampling = 1e9;  // best of all rounds: the machine may be busy
+  timed(watched, &observer);
+  std::vector<double> with, without, ratio;
   for (auto _ : bench) {
-    double plain = 0, run = 0, sample = 0;
-    for (int k = 0; k < 10; ++k) timed(plain, [&] { dem::advance(s, laws, 2 * steps_per_sample); });
-    for (int k = 0; k < 20; ++k) {
-      timed(run, [&] { dem::advance(s, laws, steps_per_sample); });
-      timed(sample, [&] { profile.add(s, laws); });
-    }
-    undisturbed = std::min(undisturbed, plain / 20);
-    stepping = std::min(stepping, run / 20);
-    sampling = std::min(sampling, sample / 20);
+    without.push_back(timed(alone, nullptr));
+    with.push_back(timed(watched, &observer));
+    ratio.push_back(with.back() / without.back() - 1);
   }
-  const double per_grain = 1e9 / static_cast<double>(s.grains.flowing);
-  bench.counters["ns_25_of_50_steps"] = undisturbed * per_grain;
-  bench.counters["ns_25_steps"] = stepping * per_grain;
-  bench.counters["ns_sample"] = sampling * per_grain;
-  bench.counters["added"] = (stepping + sampling) / undisturbed - 1;
+  bench.counters["ns_25_steps"] = *std::min_element(without.begin(), without.end());
+  bench.counters["ns_watched"] = *std::min_element(with.begin(), with.end());
+  bench.counters["added"] = median(ratio);
   bench.counters["contacts_per_grain"] =
-      static_cast<double>(dem::contacts(s, laws).size()) / static_cast<double>(s.grains.flowing);
+      static_cast<double>(dem::contacts(watched, laws).size()) / static_cast<double>(watched.grains.flowing);
 }
-BENCHMARK(streaming)->Iterations(20)->Unit(benchmark::kMillisecond);
+
+void fast(benchmark::State& bench) {
+  compare(bench, static_cast<int>(bench.range(0)),
+          [](dem::DemState& state, const dem::ContactLaws& laws, cg::ProfileObserver* by) {
+            dem::advance(state, laws, 20 * steps_per_sample, by != nullptr ? by->watch(laws) : dem::Watch{});
+          });
+}
+BENCHMARK(fast)->Arg(1)->Arg(8)->Iterations(60)->Unit(benchmark::kMillisecond);
+
+void plain(benchmark::State& bench) {
+  compare(bench, 1, [](dem::DemState& state, const dem::ContactLaws& laws, cg::ProfileObserver* by) {
+    for (int k = 0; k < 20; ++k) {
+      dem::advance_plain(state, laws, steps_per_sample);
+      if (by != nullptr) by->watch(laws).plain(state);
+    }
+  });
+}
+BENCHMARK(plain)->Iterations(20)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -48,13 +48,9 @@ DemFlow::DemFlow(const config::Section& section, const DemInput& in)
       observer_(options_, in.state.box),
       energy_every_(std::max<std::int64_t>(1, std::llround(0.5 * time_unit(in) / in.state.dt))) {}
 
-std::int64_t DemFlow::next_step(std::int64_t step) const {
-  const std::int64_t energy = (step / energy_every_ + 1) * energy_every_, sample = observer_.next_step(step);
-  return sample <= options_.last_step ? std::min(energy, sample) : energy;
-}
+std::int64_t DemFlow::next_step(std::int64_t step) const { return (step / energy_every_ + 1) * energy_every_; }
 
 void DemFlow::observe(const DemInput& in) {
-  observer_.observe(in.state, in.laws);
   if (in.state.step % energy_every_ != 0 || in.state.step == last_energy_step_) return;
   const dem::Energies e = dem::energies(in.state, in.laws);
   t_.push_back(in.state.time());

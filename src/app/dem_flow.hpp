@@ -36,6 +36,7 @@ class DemFlow {
   // Reads [cg]. `in` is prepared. Throws InputError at the place of a key that makes no sense.
   DemFlow(const config::Section& cg, const DemInput& in);
 
+  dem::Watch watch(const DemInput& in) { return observer_.watch(in.laws); }  // for every step
   std::int64_t next_step(std::int64_t step) const;  // the next one at which observe() has to be called
   void observe(const DemInput& in);
   std::vector<NamedArray> state();

@@ -44,7 +44,7 @@ class DemModel final : public Model {
       std::int64_t steps = std::min(last - in_.state.step, chunk);
       if (arrest_check_ > 0) steps = std::min(steps, arrest_check_ - in_.state.step % arrest_check_);
       if (flow_) steps = std::min(steps, flow_->next_step(in_.state.step) - in_.state.step);
-      dem::advance(in_.state, in_.laws, steps);
+      dem::advance(in_.state, in_.laws, steps, flow_ ? flow_->watch(in_) : dem::Watch{});
       if (flow_) flow_->observe(in_);
       grain_steps_ += static_cast<double>(steps * in_.state.grains.flowing);
       if (arrest_check_ > 0 && in_.state.step % arrest_check_ == 0 && time() > arrest_from_) check_arrest();

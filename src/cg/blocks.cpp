@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "dem/fast/engine.hpp"
 
 namespace bagnold::cg {
 namespace {
@@ -41,6 +42,12 @@ void BlockedProfile::add(const Snapshot& snapshot) {
 void BlockedProfile::add(const dem::DemState& state, const dem::ContactLaws& laws) {
   begin_sample(state.time());
   add_state(current_, state, laws, scratch_);
+  end_sample();
+}
+
+void BlockedProfile::add(const dem::fast::Engine& engine) {
+  begin_sample(static_cast<double>(engine.step) * engine.dt);
+  add_rows(current_, engine, scratch_);
   end_sample();
 }
 
@@ -192,7 +199,7 @@ std::vector<NamedArray> BlockedProfile::state(const std::string& prefix) {
     for (const auto& [part, bins] : {std::pair<std::string, BinMoments*>{"flow", &m.flow}, {"base", &m.base}}) {
       arrays.push_back({prefix + name + "/" + part + "_first", &bins->first});
       arrays.push_back({prefix + name + "/" + part + "_bins", &bins->count});
-      arrays.push_back({prefix + name + "/" + part + "_moments", &bins->data});
+      arrays.push_back({prefix + name + "/" + part + "_powers", &bins->data});
     }
     arrays.push_back({prefix + name + "/samples", &m.samples});
     arrays.push_back({prefix + name + "/contacts", &m.contacts});

@@ -28,7 +28,8 @@ class BlockedProfile {
   BlockedProfile(const laws::CgKernels::Any& kernel, double spacing, const Box& box, std::int64_t samples_expected = 0);
 
   void add(const Snapshot& snapshot);
-  void add(const dem::DemState& state, const dem::ContactLaws& laws);  // of a running engine
+  void add(const dem::DemState& state, const dem::ContactLaws& laws);  // of a running engine,
+  void add(const dem::fast::Engine& engine);                           // of a fast one from inside
   std::int64_t samples() const;                                        // so far, the unfinished block included
   const laws::CgKernels::Any& kernel() const { return current_.kernel; }
   const Lattice& lattice() const { return current_.lattice; }

@@ -14,14 +14,15 @@
 
 namespace bagnold::cg {
 
+// The order is that of the registers of eight numbers in which sums are taken (cg/gather.hpp).
 enum Channel : std::size_t {
-  kMass = 0,         // m
-  kMomentum = 1,     // m v_a
-  kFlux = 4,         // m v_a v_b: xx xy xz yy yz zz
-  kVolume = 10,      // pi d^3/6
-  kVolumeSize = 11,  // pi d^3/6 times d, for the mean diameter
-  kInertia = 12,     // I
-  kSpin = 13,        // I omega_a
+  kMomentum = 0,     // m v_a
+  kMass = 3,         // m
+  kSpin = 4,         // I omega_a
+  kInertia = 7,      // I
+  kFlux = 8,         // m v_a v_b: xx xy xz yy yz zz
+  kVolume = 14,      // pi d^3/6
+  kVolumeSize = 15,  // pi d^3/6 times d, for the mean diameter
   kFabric = 16,      // pi d^3/6 times n_a n_b of its contacts: xx xy xz yy yz zz
   kNumber = 22,      // 1
   kContact = 23,     // contact stress, row-major a, b

@@ -25,7 +25,7 @@ double velocity(const Local& at, std::size_t a) { return at.mean[kMomentum + a] 
 
 // dV_a/dr_b = (dp_a/dr_b - V_a drho/dr_b) / rho
 double velocity_gradient(const Local& at, std::size_t a, std::size_t b) {
-  return (at.gradient.d[b][1 + a] - velocity(at, a) * at.gradient.d[b][0]) / at.mean[kMass];
+  return (at.gradient.d[b][kMomentum + a] - velocity(at, a) * at.gradient.d[b][kMass]) / at.mean[kMass];
 }
 
 double contact(const Local& at, std::size_t a, std::size_t b) {

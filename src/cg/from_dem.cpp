@@ -30,16 +30,12 @@ double spacing_of(const StreamingOptions& o) {
 ProfileObserver::ProfileObserver(const StreamingOptions& options, const Box& box)
     : options_(options), profile_(options.kernel, spacing_of(options), box, options.samples_expected()) {}
 
-std::int64_t ProfileObserver::next_step(std::int64_t step) const {
-  if (step < options_.first_step) return options_.first_step;
-  return options_.first_step + ((step - options_.first_step) / options_.every + 1) * options_.every;
-}
-
-void ProfileObserver::observe(const dem::DemState& state, const dem::ContactLaws& laws) {
-  if (state.step < options_.first_step || state.step > options_.last_step ||
-      (state.step - options_.first_step) % options_.every != 0)
-    return;
-  profile_.add(state, laws);
+dem::Watch ProfileObserver::watch(const dem::ContactLaws& laws) {
+  return {.first = options_.first_step,
+          .last = options_.last_step,
+          .every = options_.every,
+          .plain = [this, &laws](const dem::DemState& state) { profile_.add(state, laws); },
+          .fast = [this](const dem::fast::Engine& engine) { profile_.add(engine); }};
 }
 
 }  // namespace bagnold::cg

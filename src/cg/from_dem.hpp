@@ -4,6 +4,7 @@
 
 #include "cg/blocks.hpp"
 #include "cg/snapshot.hpp"
+#include "dem/algorithm.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/state.hpp"
 
@@ -31,10 +32,8 @@ class ProfileObserver {
  public:
   ProfileObserver(const StreamingOptions& options, const Box& box);
 
-  // The next step at which observe() has to be called; beyond last_step there is none.
-  std::int64_t next_step(std::int64_t step) const;
-  // Takes a sample if this step is one of those asked for.
-  void observe(const dem::DemState& state, const dem::ContactLaws& laws);
+  // To be handed to dem::advance(); valid as long as this observer and the laws are.
+  dem::Watch watch(const dem::ContactLaws& laws);
 
   const BlockedProfile& profile() const { return profile_; }
   std::vector<NamedArray> state() { return profile_.state("cg/"); }

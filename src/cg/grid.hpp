@@ -38,7 +38,7 @@ void add_snapshot(std::vector<Row>& sums, const Grid& grid, const laws::CgKernel
 // Gradients of mass and momentum density by fourth-order differences (second order in the two rows at an open edge),
 // across the seam where the grid covers a whole period.
 struct Gradient {
-  std::array<std::array<double, 4>, 3> d{};  // d[direction] = {rho, p_x, p_y, p_z}
+  std::array<std::array<double, 4>, 3> d{};  // d[direction][channel] of kMomentum and kMass
 };
 std::vector<Gradient> gradients(const std::vector<Row>& rows, const Grid& grid, const Box& box);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -11,49 +13,90 @@
 namespace bagnold::cg {
 namespace {
 
-constexpr std::int64_t bins_per_support = 64;
 constexpr std::int64_t most_bins = 1 << 16;
 
-// What turns moments into values: for a node in the middle of an expansion at a distance of (m - 1/2) bins, the
-// derivatives -1 ... terms of the kernel (index shifted by one), or their means over the averaging interval.
+// coefficient[k][j]: what the value at the Chebyshev node j contributes to the power s^k of the interpolating polynomial,
+// sum_n 2/terms T_n(s_j) T_n(s) with the term n = 0 halved.
+template <std::size_t terms>
+struct Interpolation {
+  std::array<double, terms> node{};
+  std::array<std::array<double, terms>, terms> coefficient{};
+  Interpolation() {
+    std::array<std::array<double, terms>, terms> T{};  // T_n(s) by powers
+    for (std::size_t n = 0; n < terms; ++n) {
+      for (std::size_t k = 0; k + 1 < terms && n > 0; ++k) T[n][k + 1] = (n == 1 ? 1 : 2) * T[n - 1][k];
+      for (std::size_t k = 0; k < terms; ++k) T[n][k] -= n < 2 ? 0 : T[n - 2][k];
+      if (n == 0) T[0][0] = 1;
+      for (std::size_t j = 0; j < terms; ++j) {
+        const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / terms;
+        node[j] = std::cos(angle);
+        for (std::size_t k = 0; k < terms; ++k)
+          coefficient[k][j] += (n == 0 ? 1.0 : 2.0) / terms * std::cos(static_cast<double>(n) * angle) * T[n][k];
+      }
+    }
+  }
+};
+
+// What turns moments into values: for a node at a place in its bin (its phase) and an expansion in the bin m bins
+// further up, the coefficients of Phi, g and g' (or of their means over the averaging interval).
 struct Table {
-  std::int64_t reach;  // bins on either side of a node
+  std::int64_t reach;  // bins m: [-reach, reach)
   int terms;
-  std::vector<double> value;  // [2 reach][terms + 2]
-  const double* row(std::int64_t offset) const {
-    return value.data() + static_cast<std::size_t>((offset + reach) * (terms + 2));
+  std::vector<double> value;  // [phase][2 reach][3][terms]
+  const double* row(std::int64_t phase, std::int64_t m) const {
+    return value.data() + static_cast<std::size_t>((phase * 2 * reach + m + reach) * 3 * terms);
   }
 };
 
 template <class Kernel>
 Table make_table(const Kernel& kernel, const Lattice& lattice, bool averaged) {
+  constexpr int terms = Kernel::expansion_terms;
+  const Interpolation<static_cast<std::size_t>(terms)> interpolation;
   const double h = lattice.bin(), half = lattice.spacing / 2;
-  const auto extra = averaged ? lattice.bins_per_node / 2 : 0;
-  Table t{static_cast<std::int64_t>(std::ceil(kernel.support(1) / h - 1e-9)) + extra, Kernel::expansion_terms, {}};
-  for (std::int64_t m = -t.reach; m < t.reach; ++m) {
-    const double z = -(static_cast<double>(m) + 0.5) * h;  // node minus centre of the bin m bins above it
-    for (int n = -1; n <= t.terms; ++n)
-      t.value.push_back(averaged ? (kernel.derivative(n - 1, z + half) - kernel.derivative(n - 1, z - half)) /
-                                       lattice.spacing
-                                 : kernel.derivative(n, z));
-  }
+  const double furthest = kernel.support(1) + (averaged ? half : 0) + (lattice.nodes_per_bin > 1 ? h : 0);
+  Table t{static_cast<std::int64_t>(std::ceil(furthest / h - 1e-9)), terms, {}};
+  for (std::int64_t phase = 0; phase < lattice.nodes_per_bin; ++phase)
+    for (std::int64_t m = -t.reach; m < t.reach; ++m)
+      for (int n = -1; n <= 1; ++n) {
+        std::array<double, terms> at_nodes;
+        for (std::size_t j = 0; j < terms; ++j) {
+          const double z = static_cast<double>(phase) * lattice.spacing -
+                           (static_cast<double>(m) + 0.5 + 0.5 * interpolation.node[j]) * h;
+          at_nodes[j] =
+              averaged ? (kernel.derivative(n - 1, z + half) - kernel.derivative(n - 1, z - half)) / lattice.spacing
+                       : kernel.derivative(n, z);
+        }
+        for (const auto& row : interpolation.coefficient)
+          t.value.push_back(std::inner_product(row.begin(), row.end(), at_nodes.begin(), 0.0));
+      }
   return t;
 }
 
-// Adds the expansions of `m` at the node that is the lower edge of bin `edge`. Channels from `first_stress` on use Phi.
-void add_expansions(const BinMoments& m, const Table& t, std::int64_t edge, std::size_t first_stress, double* value,
-                    double* slope) {
+// A node as bins see it: the bin that begins at it or holds it, and its place in there.
+struct NodeInBins {
+  std::int64_t bin, phase;
+  NodeInBins(const Lattice& l, std::int64_t n) : bin(n * l.bins_per_node), phase(0) {
+    if (l.nodes_per_bin == 1) return;
+    phase = (n % l.nodes_per_bin + l.nodes_per_bin) % l.nodes_per_bin;
+    bin = (n - phase) / l.nodes_per_bin;
+  }
+};
+
+// Adds the expansions of `m` at a node. Channels from `first_stress` on use Phi.
+void add_expansions(const BinMoments& m, const Table& t, const NodeInBins& node, std::size_t first_stress,
+                    double* value, double* slope) {
   const auto width = static_cast<std::size_t>(m.width);
-  const std::int64_t lo = std::max(edge - t.reach, m.first), hi = std::min(edge + t.reach, m.first + m.count);
+  const std::int64_t lo = std::max(node.bin - t.reach, m.first), hi = std::min(node.bin + t.reach, m.first + m.count);
   for (std::int64_t b = lo; b < hi; ++b) {
-    const double* d = t.row(b - edge);
+    const double* d = t.row(node.phase, b - node.bin);
     const double* bin = m.data.data() + static_cast<std::size_t>((b - m.first) * m.terms) * width;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(t.terms); ++k) {
-      const double* M = bin + k * width;
-      for (std::size_t c = 0; c < first_stress; ++c) value[c] += d[k + 1] * M[c];
-      for (std::size_t c = 0; c < first_stress; ++c) slope[c] += d[k + 2] * M[c];
-      for (std::size_t c = first_stress; c < width; ++c) value[c] += d[k] * M[c];
-      for (std::size_t c = first_stress; c < width; ++c) slope[c] += d[k + 1] * M[c];
+    const auto terms = static_cast<std::size_t>(t.terms);
+    for (std::size_t k = 0; k < terms; ++k) {
+      const double *M = bin + k * width, integral = d[k], kernel = d[terms + k], derivative = d[2 * terms + k];
+      for (std::size_t c = 0; c < first_stress; ++c) value[c] += kernel * M[c];
+      for (std::size_t c = 0; c < first_stress; ++c) slope[c] += derivative * M[c];
+      for (std::size_t c = first_stress; c < width; ++c) value[c] += integral * M[c];
+      for (std::size_t c = first_stress; c < width; ++c) slope[c] += kernel * M[c];
     }
   }
 }
@@ -97,12 +140,12 @@ void cover(BinMoments& m, std::int64_t b, double z) {
 Lattice make_lattice(const laws::CgKernels::Any& kernel, double spacing, double origin) {
   return std::visit(
       [&](const auto& k) {
-        const double finest = k.support(1) / static_cast<double>(bins_per_support);
-        Lattice l{origin, spacing, 2};
+        const double finest = k.support(1) / static_cast<double>(k.bins_per_support);
+        Lattice l{origin, spacing};
         if constexpr (std::is_same_v<std::decay_t<decltype(k)>, laws::CgGaussian>) {
-          l.bins_per_node =
-              2 * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(spacing / (2 * finest) - 1e-9)));
-        } else {  // knots at 0 and at the cut-off have to be edges
+          l.bins_per_node = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(spacing / finest - 1e-9)));
+          l.nodes_per_bin = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor(finest / spacing + 1e-9)));
+        } else {  // knots at 0, at the cut-off and at the edges of averaging intervals have to be edges
           l.bins_per_node = 2 * std::max<std::int64_t>(1, std::llround(spacing / (2 * finest)));
           l.spacing = static_cast<double>(l.bins_per_node) * finest;
         }
@@ -151,11 +194,11 @@ ProfileSums evaluate(const ProfileMoments& p, std::int64_t first, std::int64_t c
                   std::vector<Row>(static_cast<std::size_t>(count))};
   for (std::int64_t n = 0; n < count; ++n) {
     Row &value = out.value[static_cast<std::size_t>(n)], &slope = out.slope[static_cast<std::size_t>(n)];
-    const std::int64_t edge = (first + n) * p.lattice.bins_per_node;
-    add_expansions(p.flow, table, edge, kCarried, value.data(), slope.data());
-    add_below(p.flow, flow_below, edge - table.reach, kCarried, value.data());
-    add_expansions(p.base, table, edge, 0, value.data() + kBase, slope.data() + kBase);
-    add_below(p.base, base_below, edge - table.reach, 0, value.data() + kBase);
+    const NodeInBins node(p.lattice, first + n);
+    add_expansions(p.flow, table, node, kCarried, value.data(), slope.data());
+    add_below(p.flow, flow_below, node.bin - table.reach, kCarried, value.data());
+    add_expansions(p.base, table, node, 0, value.data() + kBase, slope.data() + kBase);
+    add_below(p.base, base_below, node.bin - table.reach, 0, value.data() + kBase);
     for (int a = 0; a < 3; ++a) value[kBase + static_cast<std::size_t>(3 * a + 2)] += p.base_force[a];  // Phi - 1
     for (double& v : value) v /= p.area;
     for (double& v : slope) v /= p.area;
@@ -171,11 +214,11 @@ NodeRange reach(const ProfileMoments& p) {
     lo = std::min(lo, p.base.first);
     hi = std::max(hi, p.base.first + p.base.count);
   }
-  const auto margin = static_cast<std::int64_t>(std::ceil(support / p.lattice.bin())) + p.lattice.bins_per_node;
-  const auto down = static_cast<std::int64_t>(
-      std::floor(static_cast<double>(lo - margin) / static_cast<double>(p.lattice.bins_per_node)));
-  const auto up = static_cast<std::int64_t>(
-      std::ceil(static_cast<double>(hi + margin) / static_cast<double>(p.lattice.bins_per_node)));
+  const double margin = support + p.lattice.spacing, h = p.lattice.bin();
+  const auto down =
+      static_cast<std::int64_t>(std::floor((static_cast<double>(lo) * h - margin) / p.lattice.spacing - 1e-9));
+  const auto up =
+      static_cast<std::int64_t>(std::ceil((static_cast<double>(hi) * h + margin) / p.lattice.spacing + 1e-9));
   return {down, up - down + 1};
 }
 

@@ -1,43 +1,49 @@
-// Depth profiles of long series at a cost of nanoseconds per grain: sums are gathered as local expansions about the
-// centres of fine bins, and turned into fields once, at the end.
+// Depth profiles of long series at a cost of nanoseconds per grain: sums are gathered as powers about the centres of
+// fine bins, and turned into fields once, at the end.
 //
 // Averaged over x and y every term of rho, p and of the stress is q g(z - z_i) or C Phi(z - z_i) with Phi' = g the
-// integral of the kernel. For a grain at z_i = z_b + delta in the bin about z_b,
+// integral of the kernel. For a grain at z_i = z_b + s h/2 in the bin of width h about z_b, -1 <= s <= 1, the integral is
+// replaced by the polynomial in s that equals it at the Chebyshev nodes s_j of the bin,
 //
-//   g(z - z_i) = sum_k (-delta)^k/k! g^(k)(z - z_b),   Phi(z - z_i) = sum_k (-delta)^k/k! Phi^(k)(z - z_b),
+//   Phi(z - z_i) = sum_k a_k(z) s^k,   a_k(z) = sum_j A_kj Phi(z - z_b - s_j h/2),   g(z - z_i) = sum_k a_k'(z) s^k,
 //
-// so a bin needs the moments M_k = sum q (-delta)^k/k! only. Both series stop at the same k: the truncated g is
-// the derivative of the truncated Phi, and the balances of mass and momentum stay exact to round-off. The Gaussian
-// keeps 8 terms with bins of w/8, which leaves 6e-13 of the peak; Lucy and Heaviside are polynomials between their knots, which
-// lie on edges of bins, so their expansions are complete.
+// so a bin needs the sums of q s^k only. In other words: a grain is shared among the nodes of its bin with weights that add up to
+// one. Nodes carry the exact kernel and its exact derivatives, so the balances of mass and momentum stay exact to
+// round-off, whatever the polynomials neglect. The Gaussian keeps 10 powers in bins of w/2, which leaves 1e-12 of the peak;
+// Lucy and Heaviside are polynomials between their knots, which lie on edges of bins, and are not approximated at all.
 //
 // Contact stress needs no special function per contact: -f_a r_b [Phi(z - z_j) - Phi(z - z_i)]/(z_i - z_j) is a
-// tensor f_a r_b/r_z given to grain i and taken from grain j. Contacts that are nearly level (|r_z| < 2e-3 w) would
-// cancel; they enter as -f_a r_b (g + r_z^2/24 g'') at their middle, which is a shift of their moments by one.
+// tensor f_a r_b/r_z given to grain i and taken from grain j. Where the difference would cancel, in contacts that are nearly
+// level (|r_z| < 2e-3 w), the differences of powers (s_i^k - s_j^k)/(s_i - s_j) are formed without cancellation.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cg/channels.hpp"
 #include "cg/snapshot.hpp"
 #include "core/arrays.hpp"
 #include "dem/contact_model.hpp"
+#include "dem/contacts.hpp"
+#include "dem/fast/look.hpp"
 #include "laws/registries.hpp"
 
 namespace bagnold::cg {
 
-// Moments of `width` channels about the centres of bins [first, first + count): data[bin][term][channel].
+// Moments sum q s^k of `width` channels in bins [first, first + count): data[bin][k < terms][channel].
 struct BinMoments {
   std::int64_t first = 0, count = 0, width = 0, terms = 0;
   std::vector<double> data;
 };
 
-// Where a profile is evaluated: nodes n * spacing + origin, which are edges of bins.
+// Where a profile is evaluated: nodes n * spacing + origin. Bins begin at the origin as well; their width is a fraction or
+// a multiple of the spacing.
 struct Lattice {
   double origin = 0, spacing = 0;
-  std::int64_t bins_per_node = 2;  // even, so that the edges of averaging intervals are edges of bins as well
-  double bin() const { return spacing / static_cast<double>(bins_per_node); }
+  std::int64_t bins_per_node = 1, nodes_per_bin = 1;  // one of them is 1
+  double bin() const { return spacing * static_cast<double>(nodes_per_bin) / static_cast<double>(bins_per_node); }
   double node(std::int64_t n) const { return origin + static_cast<double>(n) * spacing; }
 };
 
@@ -59,21 +65,35 @@ struct ProfileMoments {
   BinMoments flow, base;
 };
 
-// Scratch of add_snapshot and add_state, kept between calls so that nothing is allocated.
+// Sums over the contacts of a grain, channels [16, 32): fabric (not yet times the volume), nothing, contact stress.
+struct alignas(64) ContactShare {
+  std::array<double, 16> channel{};
+};
+
+// Memory of the functions below, kept between calls so that nothing is allocated.
 struct ProfileScratch {
-  std::vector<double>
-      of_contacts;  // per flowing grain: 9 of the contact stress, 6 of the fabric, 1 unused; 0 between calls
-  std::vector<std::int32_t> bin, order, begin;  // grains sorted by bin
-  std::vector<double> delta;                    // of a grain, from the centre of its bin
+  std::vector<ContactShare> shares;         // 0 between calls,
+  bool unfinished = false;                  // unless one was left by an exception
+  std::vector<std::int32_t> slot;           // of a grain in `shares`; -1 if it touches nothing
+  std::vector<std::int32_t> next_slot;      // by slab
+  std::vector<std::int32_t> bin, count;     // of a grain; by range of grains and bin
+  std::vector<std::int32_t> begin, order;   // by bin; grains in the order of their bins
+  std::vector<double> place, sorted_place;  // s of a grain in its bin; the same in that order
+  std::vector<std::pair<std::size_t, std::size_t>> ranges;
+  std::vector<dem::fast::Aligned<dem::fast::ContactPack>> packs;  // by thread
+  std::vector<std::vector<dem::ContactForce>> special;            // by section: with the base, or nearly level
+  std::vector<std::int64_t> contacts;                             // by section
 };
 
 ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& lattice, const Box& box);
 
 // Throws NumericalError if a grain is so far away that it cannot be part of a profile (or its position is not finite).
 void add_snapshot(ProfileMoments& moments, const Snapshot& snapshot, ProfileScratch& scratch);
-// The same from a running engine, without the copies a Snapshot needs.
+// The same from a running engine, without the copies a Snapshot needs: from its state,
 void add_state(ProfileMoments& moments, const dem::DemState& state, const dem::ContactLaws& laws,
                ProfileScratch& scratch);
+// and from inside the fast one. The result does not depend on the number of threads.
+void add_rows(ProfileMoments& moments, const dem::fast::Engine& engine, ProfileScratch& scratch);
 void clear(ProfileMoments& moments);                               // keeps the bins
 void add_moments(ProfileMoments& to, const ProfileMoments& from);  // of the same kernel and lattice
 

@@ -18,7 +18,7 @@ struct Engine;
 struct Watch {
   std::int64_t first = 0, last = -1, every = 1;
   std::function<void(const DemState&)> plain;
-  std::function<void(const fast::Engine&, const DemState&)> fast;  // of the state only what never changes is current
+  std::function<void(const fast::Engine&)> fast;  // dem/fast/engine.hpp, look.hpp
 
   // Next step after `step` that is looked at; none if it is later than `last`.
   std::int64_t next(std::int64_t step) const {

@@ -59,7 +59,7 @@ TEST(Watch, SeesTheStepsAskedForAndDisturbsNothing) {
     std::vector<std::int64_t> seen;
     Watch watch{.first = 10, .last = 90, .every = 25};
     watch.plain = [&](const DemState& s) { seen.push_back(s.step); };
-    watch.fast = [&](const fast::Engine& engine, const DemState&) { seen.push_back(engine.step); };
+    watch.fast = [&](const fast::Engine& engine) { seen.push_back(engine.step); };
     for (const int steps : {9, 1, 30, 80}) advance(watched, material.laws, steps, watch);
     advance(alone, material.laws, 120);
     EXPECT_EQ(seen, (std::vector<std::int64_t>{10, 35, 60, 85}));
@@ -75,7 +75,7 @@ TEST(Watch, RowsAndContactsAreThoseOfTheState) {
     std::map<std::pair<int, int>, std::array<Vec3, 3>> met;  // branch, normal, force; by grains i < j
     double overlaps = 0;
     Watch watch{.first = 321, .last = 321};
-    watch.fast = [&](const fast::Engine& engine, const DemState&) {
+    watch.fast = [&](const fast::Engine& engine) {
       for (std::size_t i = 0; i < force.size(); ++i) {
         const double* at = &engine.rows.position[fast::position_doubles * engine.row[i]];
         x.push_back({at[0], at[1], at[2]});

@@ -22,8 +22,8 @@ struct CgGaussian {
                             &CgGaussian::width, positive())};
   }
 
-  // Terms of the local expansion that a profile keeps; see cg/moments.hpp.
-  static constexpr int expansion_terms = 8;
+  // Powers that a profile keeps of the place in a bin, and bins per cut-off; see cg/moments.hpp.
+  static constexpr int expansion_terms = 10, bins_per_support = 16;
 
   double support(int /*dimension*/) const { return 8 * width; }
 

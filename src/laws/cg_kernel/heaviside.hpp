@@ -24,6 +24,7 @@ struct CgHeaviside {
                             &CgHeaviside::width, positive())};
   }
 
+  static constexpr int bins_per_support = 64;
   static constexpr int expansion_terms = 3;  // a polynomial of degree 2 after two integrations: nothing is neglected
 
   double support(int dimension) const { return width * std::sqrt(dimension + 2.0); }

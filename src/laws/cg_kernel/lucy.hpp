@@ -24,6 +24,7 @@ struct CgLucy {
                             positive())};
   }
 
+  static constexpr int bins_per_support = 64;
   static constexpr int expansion_terms = 7;  // a polynomial of degree 6 after two integrations: nothing is neglected
 
   double support(int dimension) const {

@@ -1,0 +1,196 @@
+// Gathering from inside the fast engine: grains from its rows, contacts from its lists.
+#include <numbers>
+
+#include <omp.h>
+
+#include "cg/gather.hpp"
+#include "core/simd.hpp"
+#include "dem/fast/engine.hpp"
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace bagnold::cg {
+namespace {
+
+using dem::fast::ContactPack;
+
+class RowGrains {
+ public:
+  // What follows from the mass and size of a grain; neighbours mostly have the same.
+  struct Memo {
+    double inverse_mass = 0, inverse_inertia = 0, radius = 0, volume = 0;
+    Lanes half_step{}, inertia{}, volumes{};  // dt/2m, dt/2I; m, I; pi d^3/6 and the same times d
+  };
+
+  explicit RowGrains(const dem::fast::Engine& engine)
+      : position_(engine.rows.position.data()),
+        velocity_(engine.rows.velocity.data()),
+        force_(engine.rows.force.data()),
+        half_(engine.step == 0 ? 0 : 0.5 * engine.dt),
+        half_gravity_{half_ * engine.gravity.x, half_ * engine.gravity.y, half_ * engine.gravity.z} {}
+
+  double z(std::size_t k) const { return position_[dem::fast::position_doubles * k + 2]; }
+  double diameter(std::size_t k) const { return 2 * position_[dem::fast::position_doubles * k + 3]; }
+  bool flows(std::size_t k) const { return velocity_[dem::fast::velocity_doubles * k + 7] != 0; }
+
+  [[gnu::always_inline]] void carry(std::size_t k, Memo& memo, Lanes& a, Lanes& b) const {
+    const double *v = velocity_ + dem::fast::velocity_doubles * k, *f = force_ + dem::fast::force_doubles * k;
+    if (f[3] != memo.inverse_mass || f[7] != memo.inverse_inertia || v[3] != memo.radius) renew(memo, v, f);
+    // { v, 1, omega, 1 } at the time of the positions
+    const Lanes motion = __builtin_shufflevector(memo.half_step * lanes(f) + (lanes(v) + half_gravity_), Lanes{} + 1, 0,
+                                                 1, 2, 8, 4, 5, 6, 8);
+    a = memo.inertia * motion;
+    b = __builtin_shufflevector(motion, Lanes{} + 1, 0, 0, 0, 1, 1, 2, 8, 8) *
+        __builtin_shufflevector(a, memo.volumes, 0, 1, 2, 1, 2, 2, 8, 9);
+  }
+
+ private:
+  void renew(Memo& memo, const double* v, const double* f) const {
+    const double m = 1 / f[3], I = 1 / f[7], d = 2 * v[3];
+    memo.inverse_mass = f[3];
+    memo.inverse_inertia = f[7];
+    memo.radius = v[3];
+    memo.volume = std::numbers::pi / 6 * d * d * d;
+    memo.half_step = half_ * Lanes{f[3], f[3], f[3], 0, f[7], f[7], f[7], 0};
+    memo.inertia = Lanes{m, m, m, m, I, I, I, I};
+    memo.volumes = Lanes{memo.volume, memo.volume * d};
+  }
+
+  const double *position_, *velocity_, *force_;
+  double half_;
+  Lanes half_gravity_;
+};
+
+// Channels [16, 32) of eight contacts: fabric, nothing, contact stress f_a r_b/r_z.
+struct PackShares {
+  Lanes low[8], high[8];  // by contact
+};
+
+[[gnu::always_inline]] inline void transpose(Lanes (&row)[8]) {
+  Lanes a[8], b[8];
+  for (std::size_t k = 0; k < 8; k += 2) {
+    a[k] = __builtin_shufflevector(row[k], row[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    a[k + 1] = __builtin_shufflevector(row[k], row[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (std::size_t k = 0; k < 8; k += 4)
+    for (std::size_t l = 0; l < 2; ++l) {
+      b[k + l] = __builtin_shufflevector(a[k + l], a[k + l + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      b[k + l + 2] = __builtin_shufflevector(a[k + l], a[k + l + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (std::size_t l = 0; l < 4; ++l) {
+    row[l] = __builtin_shufflevector(b[l], b[l + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    row[l + 4] = __builtin_shufflevector(b[l], b[l + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+// Returns which of the contacts are nearly level; those give their grains f_a r_z/r_z only.
+[[gnu::always_inline]] inline std::uint32_t evaluate(const ContactPack& c, double least_height, PackShares& out) {
+  const auto of = [](const ContactPack::Vector& v, std::size_t a) { return Pack::load(v[a].data()); };
+  const Pack rx = of(c.branch, 0), ry = of(c.branch, 1), rz = of(c.branch, 2), zero = 0.0;
+  const Pack fx = of(c.force, 0), fy = of(c.force, 1), fz = of(c.force, 2);
+  const Pack nx = of(c.normal, 0), ny = of(c.normal, 1), nz = of(c.normal, 2);
+  const Mask is_level = abs(rz) < Pack(least_height);
+  const Pack per_z = select(is_level, zero, Pack(1) / rz), x = rx * per_z, y = ry * per_z;
+  const Pack low[8] = {nx * nx, nx * ny, nx * nz, ny * ny, ny * nz, nz * nz, zero, fx * x};
+  const Pack high[8] = {fx * y, fx, fy * x, fy * y, fy, fz * x, fz * y, fz};
+  for (int k = 0; k < 8; ++k) out.low[k] = low[k].v, out.high[k] = high[k].v;
+  transpose(out.low);
+  transpose(out.high);
+  return to_integer(is_level);
+}
+
+dem::ContactForce lane_of(const ContactPack& c, std::size_t k) {
+  const auto vector = [k](const ContactPack::Vector& v) { return Vec3{v[0][k], v[1][k], v[2][k]}; };
+  return {static_cast<std::int32_t>(c.i[k]),
+          static_cast<std::int32_t>(c.j[k]),
+          vector(c.branch),
+          vector(c.normal),
+          vector(c.force),
+          c.overlap[k]};
+}
+
+// Gives every grain of a section its share of the contacts; those with the base and those nearly level are put aside.
+void share_section(const dem::fast::Engine& engine, const RowGrains& grains, std::size_t section, double least_height,
+                   ProfileScratch& w) {
+  auto& packs = w.packs[static_cast<std::size_t>(omp_get_thread_num())];
+  auto& special = w.special[section];
+  special.clear();
+  w.contacts[section] = 0;
+  const std::size_t here = section, there = section + 1 == engine.slabs.size() ? 0 : section + 1;
+  const auto share_of_row = [&](std::size_t row) {
+    const auto& slab = engine.slabs[here];
+    return share_of(w, row, w.next_slot[row - slab.begin < slab.end - slab.begin ? here : there]);
+  };
+  const Lanes opposite{1, 1, 1, 1, 1, 1, 1, -1};
+  const std::size_t count = dem::fast::look_at_contacts(engine, section, packs);
+  PackShares share;
+  for (std::size_t p = 0; p < count; ++p) {
+    const ContactPack& c = packs[p];
+    const std::uint32_t is_level = evaluate(c, least_height, share);
+    w.contacts[section] += __builtin_popcount(c.touching);
+    for (std::uint32_t left = c.touching; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(__builtin_ctz(left));
+      const std::size_t i = c.i[k], j = c.j[k];
+      const bool i_flows = grains.flows(i), j_flows = grains.flows(j);
+      if (i_flows && j_flows) {
+        double *to_i = share_of_row(i), *to_j = share_of_row(j);
+        lanes(to_i) += share.low[k];
+        lanes(to_i + 8) += share.high[k];
+        lanes(to_j) += opposite * share.low[k];
+        lanes(to_j + 8) -= share.high[k];
+        if ((is_level >> k & 1) != 0) special.push_back(lane_of(c, k));
+        continue;
+      }
+      Lanes& fabric = lanes(share_of_row(i_flows ? i : j));
+      fabric += __builtin_shufflevector(share.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8);
+      dem::ContactForce contact = lane_of(c, k);
+      if (!i_flows) contact = {contact.j, contact.i, -contact.branch, -contact.normal, -contact.force, contact.overlap};
+      special.push_back(contact);
+    }
+  }
+}
+
+}  // namespace
+
+void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) {
+  const RowGrains grains(engine);
+  const std::size_t sections = engine.sections.size();
+  w.ranges.clear();
+  for (const auto& slab : engine.slabs) w.ranges.emplace_back(slab.begin, slab.moving_end);
+  sort_by_bin(p, grains, w);
+
+  prepare_shares(w, engine.rows.size());
+  w.next_slot.clear();
+  for (const auto& slab : engine.slabs) w.next_slot.push_back(static_cast<std::int32_t>(slab.begin));
+  w.packs.resize(std::max(w.packs.size(), static_cast<std::size_t>(threads())));
+  w.special.resize(sections);
+  w.contacts.resize(sections);
+  const double least_height = level(p);
+  // Sections share slabs with their neighbours in the ring: every other one at a time, always in this order.
+  const auto share_every_other = [&](std::size_t first, std::size_t last) {
+    parallel_for(
+        static_cast<std::int64_t>((last - first + 1) / 2),
+        [&](std::int64_t n) {
+          share_section(engine, grains, first + 2 * static_cast<std::size_t>(n), least_height, w);
+        },
+        engine.grain.size() >= 500);
+  };
+  share_every_other(0, sections - sections % 2);
+  share_every_other(1, std::max<std::size_t>(sections, 1));
+  if (sections % 2 == 1) share_every_other(sections - 1, sections);
+
+  for (std::size_t s = 0; s < sections; ++s) {
+    p.contacts += static_cast<double>(w.contacts[s]);
+    for (const dem::ContactForce& c : w.special[s]) {
+      const auto i = static_cast<std::size_t>(c.i);
+      if (grains.flows(static_cast<std::size_t>(c.j)))
+        add_level_contact(p, grains.z(i), c);
+      else
+        add_base_contact(p, grains.z(i), grains.diameter(i), c);
+    }
+  }
+  deposit_grains(p, grains, w);
+  ++p.samples;
+}
+
+}  // namespace bagnold::cg
