@@ -19,28 +19,42 @@ namespace bagnold::dem::fast {
 
 namespace {
 
-using HalfRegister = double __attribute__((vector_size(32), may_alias));
+using Half = double __attribute__((vector_size(32), may_alias));
+Half& half(double* p) { return *reinterpret_cast<Half*>(p); }
 
 // Kick and drift of the grains in rows [begin, end): v += kick (F/m + g), x += dt v. Forces start again at 0.
-// Returns a bound on their acceleration.
-double move_rows(Rows& rows, std::size_t begin, std::size_t end, const Vec3& gravity, double kick, double dt) {
-  const Register g{gravity.x, gravity.y, gravity.z, 0, 0, 0, 0, 0};
-  const Register kick_all{kick, kick, kick, 0, kick, kick, kick, 0};  // 0: radius and 1/m stay
-  const HalfRegister drift{dt, dt, dt, 0};
-  Register largest{};
+// Returns a bound on their acceleration. Nothing overlaps: otherwise every grain would wait for the stores of the last.
+double move_rows(double* __restrict position, double* __restrict velocity, double* __restrict force, std::size_t begin,
+                 std::size_t end, const Vec3& gravity, double kick, double dt) {
+  const Half g{gravity.x, gravity.y, gravity.z, 0}, kicks{kick, kick, kick, 0}, drift{dt, dt, dt, 0};
+  Half largest{};
   for (std::size_t k = begin; k < end; ++k) {
-    auto& force = *reinterpret_cast<Register*>(&rows.force[force_doubles * k]);
-    auto& velocity = *reinterpret_cast<Register*>(&rows.velocity[velocity_doubles * k]);
-    auto& position = *reinterpret_cast<HalfRegister*>(&rows.position[position_doubles * k]);
-    const Register inverse_inertia = __builtin_shufflevector(force, force, 3, 3, 3, 3, 7, 7, 7, 7);
-    const Register acceleration = force * inverse_inertia + g;
-    const Register v = acceleration * kick_all + velocity;
-    velocity = v;
-    position = __builtin_shufflevector(v, v, 0, 1, 2, 3) * drift + position;
-    force = __builtin_shufflevector(force, Register{}, 8, 8, 8, 3, 8, 8, 8, 7);
-    largest = bagnold::detail::most(bagnold::detail::magnitude(acceleration), largest);
+    double *x = position + position_doubles * k, *v = velocity + velocity_doubles * k, *f = force + force_doubles * k;
+    const Half push = half(f), turn = half(f + 4);
+    const Half acceleration = push * __builtin_shufflevector(push, push, 3, 3, 3, 3) + g;
+    const Half spin_up = turn * __builtin_shufflevector(turn, turn, 3, 3, 3, 3);
+    const Half moved = acceleration * kicks + half(v);
+    half(x) = moved * drift + half(x);
+    half(v) = moved;
+    half(v + 4) = spin_up * kicks + half(v + 4);
+    half(f) = __builtin_shufflevector(push, Half{}, 4, 4, 4, 3);  // the constants stay
+    half(f + 4) = __builtin_shufflevector(turn, Half{}, 4, 4, 4, 3);
+    const Half size = acceleration < 0.0 ? -acceleration : acceleration;
+    largest = size > largest ? size : largest;
   }
   return std::sqrt(largest[0] * largest[0] + largest[1] * largest[1] + largest[2] * largest[2]);
+}
+
+// Copies the histories of `count` pairs, `numbers` each in groups of eight pairs: pair k from where place[key[k]] says, or
+// from the zeros.
+template <std::size_t numbers>
+void copy_histories(const std::uint32_t* __restrict key, std::size_t count, const std::uint32_t* __restrict place,
+                    std::uint32_t zeros, const double* __restrict from, double* __restrict to) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double* source = from + std::min(place[key[k]], zeros);
+    double* target = to + k / 8 * 8 * numbers + k % 8;
+    for (std::size_t c = 0; c < numbers; ++c) target[8 * c] = source[8 * c];
+  }
 }
 
 // History of the new inner list from the old one: `place` maps outer pairs to where their numbers were.
@@ -48,7 +62,7 @@ void carry_history(Engine& engine, Section& section, Scratch& scratch) {
   const std::size_t numbers = engine.history_numbers;
   constexpr std::uint32_t nowhere = 0xffffffff;
   Selection& next = scratch.inner;
-  const std::size_t old_padded = (section.inner.count + batch - 1) / batch * batch;
+  const std::size_t old_count = section.inner.count, old_padded = (old_count + batch - 1) / batch * batch;
   const std::size_t new_padded = (next.count + batch - 1) / batch * batch;
   const auto zeros = static_cast<std::uint32_t>(old_padded * numbers);
   if (scratch.history.size() < (new_padded + 8) * numbers)
@@ -58,15 +72,12 @@ void carry_history(Engine& engine, Section& section, Scratch& scratch) {
   if (scratch.place.size() < section.outer_count + 1)
     scratch.place.assign(section.outer_count + section.outer_count / 4 + 16, nowhere);
   std::uint32_t* place = scratch.place.data();
-  for (std::size_t k = 0; k < section.inner.count; ++k)
-    place[section.inner.key[k]] = static_cast<std::uint32_t>((k / 8 * numbers) * 8 + k % 8);
-  for (std::size_t k = 0; k < new_padded; k += 8) {
-    alignas(32) std::uint32_t from[8];
-    for (std::size_t l = 0; l < 8; ++l) from[l] = std::min(place[next.key[k + l]], zeros);
-    for (std::size_t c = 0; c < numbers; ++c)
-      gather(section.history.data() + 8 * c, from).store(&scratch.history[k * numbers + 8 * c]);
-  }
-  for (std::size_t k = 0; k < section.inner.count; ++k) place[section.inner.key[k]] = nowhere;
+  const std::uint32_t* old_key = section.inner.key.data();
+  for (std::size_t k = 0; k < old_count; ++k)
+    place[old_key[k]] = static_cast<std::uint32_t>(k / 8 * 8 * numbers + k % 8);
+  (numbers == 3 ? copy_histories<3> : copy_histories<6>)(next.key.data(), new_padded, place, zeros,
+                                                         section.history.data(), scratch.history.data());
+  for (std::size_t k = 0; k < old_count; ++k) place[old_key[k]] = nowhere;
 }
 
 // An economical margin: what `steps` steps of the present accelerations would use up, and a quarter more.
@@ -135,7 +146,8 @@ void pass(Engine& engine, const Tables& tables, int from, int to) {
   const auto move = [&](int s, int t) {
     Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
     const double kick = engine.step + t - from == 0 ? 0.5 * engine.dt : engine.dt;  // the first step closes no other
-    slab.acceleration = move_rows(engine.rows, slab.begin, slab.moving_end, engine.gravity, kick, engine.dt);
+    slab.acceleration = move_rows(engine.rows.position.data(), engine.rows.velocity.data(), engine.rows.force.data(),
+                                  slab.begin, slab.moving_end, engine.gravity, kick, engine.dt);
     slab.drift.step(engine.dt, slab.acceleration);
     --slab.steps_left;
   };

@@ -1,6 +1,7 @@
 // Forces of eight pairs at a time, through the pair law of laws/contact/pair.hpp and nothing else: here rows become
 // packs, the law acts on every pair of the list as if it touched, and masks drop what pairs apart would do.
 #pragma once
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -18,16 +19,15 @@ inline constexpr std::size_t batch = Lanes::lanes;
 // type if it has none. source(c): number c of the pairs' laws in every lane.
 template <template <class> class Law, class Source>
 Law<Lanes> pack_law(const Law<double>*, std::size_t& first, Source&& source) {
-  Law<Lanes> packed{};
-  if constexpr (!std::is_empty_v<Law<double>>) {
+  if constexpr (std::is_empty_v<Law<double>>) {
+    return {};
+  } else {
     constexpr std::size_t numbers = sizeof(Law<double>) / sizeof(double);
-    static_assert(sizeof(packed) == numbers * sizeof(Lanes));
-    Lanes values[numbers];
-    for (std::size_t c = 0; c < numbers; ++c) values[c] = source(first + c);
-    std::memcpy(&packed, values, sizeof packed);
+    const std::size_t begin = first;
     first += numbers;
+    return [&]<std::size_t... C>(std::index_sequence<C...>) { return Law<Lanes>{source(begin + C)...}; }
+    (std::make_index_sequence<numbers>());
   }
-  return packed;
 }
 template <class Tables, class Source>
 auto pack_laws(const Tables& tables, Source&& source) {
@@ -58,6 +58,12 @@ std::size_t flatten_tables(const Tables& tables, std::vector<double>& out) {
   return out.size() / static_cast<std::size_t>(tables.species * tables.species);
 }
 
+// Whether a normal law depends on the masses and radii of a pair, which the kernel otherwise need not fetch.
+template <class Normal>
+inline constexpr bool reads_size = true;
+template <>
+inline constexpr bool reads_size<laws::LinearNormal<double>> = false;
+
 // The pairs of a section as the kernel walks through them, padded to whole batches.
 struct Batches {
   const Offset *i, *j;
@@ -78,6 +84,7 @@ struct KernelInput {
 template <class Tables, bool EqualRadii, bool OneKind>
 struct Kernel {
   static constexpr bool rolls = std::remove_pointer_t<decltype(Tables::rolling)>::active;
+  static constexpr bool sized = reads_size<std::remove_cvref_t<decltype(*Tables::normal)>> || !EqualRadii;
   static constexpr bool symmetric = EqualRadii && !rolls;  // the torques on i and j are the same
   static constexpr std::size_t history_numbers = rolls ? 6 : 3;
   using Motion = laws::PairMotion<Lanes, EqualRadii>;
@@ -109,49 +116,103 @@ struct Kernel {
     a.z.store(memory + 16);
   }
 
+  // What the law wants to know of a batch: r, v_ij, omega_i + omega_j, r_i + r_j; if it matters 1/m_i + 1/m_j and
+  // r_i - r_j; unless the torques are the same omega_i - omega_j and 1/m_i - 1/m_j.
+  static constexpr std::size_t collected = symmetric ? (sized ? 12 : 10) : 16, acted = symmetric ? 6 : 9;
+
+  static void collect(const double* position, const double* velocity, const Offset* i, const Offset* j,
+                      const Images& images, double* to) {
+    const Separation apart = separation(position, i, j);
+    const RelativeMotion moving = relative_motion(velocity, i, j);
+    store(fold(images, apart.r), to);
+    store(moving.v, to + 24);
+    store(moving.spin_sum, to + 48);
+    apart.reach.store(to + 72);
+    if constexpr (collected > 10) {
+      moving.inverse_mass.store(to + 80);
+      moving.size_difference.store(to + 88);
+    }
+    if constexpr (collected > 12) {
+      const RowDifference d = difference(velocity, i, j, 4);
+      store(d.xyz, to + 96);
+      d.fourth.store(to + 120);
+    }
+  }
+
+  // Force and torques of a batch, 0 where the pair does not touch; its history moves on by dt. Returns the overlaps in
+  // excess of the permitted one.
+  template <class Law>
+  static Lanes interact(const Law& law, const double* from, const Lanes& dt, const Lanes& overlap_ratio, double* memory,
+                        double* to) {
+    const Lanes zero = 0.0;
+    const Vec3Of<Lanes> nothing{zero, zero, zero};
+    Motion m{load(from), load(from + 24), load(from + 48), nothing, Lanes::load(from + 72), zero, 1.0};
+    Lanes inverse_mass = zero, mass_difference = zero;
+    if constexpr (collected > 10) {
+      inverse_mass = Lanes::load(from + 80);
+      m.size_difference = Lanes::load(from + 88);
+    }
+    if constexpr (collected > 12) {
+      m.spin_difference = load(from + 96);
+      mass_difference = Lanes::load(from + 120);
+    }
+    const auto geometry = laws::pair_geometry(m);
+    History history{load(memory), nothing};
+    if constexpr (rolls) history.roll = load(memory + 24);
+    const auto force = laws::interact<true>(law, geometry, sizes(m, inverse_mass, mass_difference), dt, history);
+    const auto touching = geometry.overlap > zero;
+    store(select(touching, history.spring, nothing), memory);
+    if constexpr (rolls) store(select(touching, history.roll, nothing), memory + 24);
+    store(select(touching, force.force, nothing), to);
+    store(select(touching, force.torque_i, nothing), to + 24);
+    if constexpr (!symmetric) store(select(touching, force.torque_j, nothing), to + 48);
+    const Lanes smaller = EqualRadii ? m.reach : m.reach - abs(m.size_difference);  // twice the smaller radius
+    return geometry.overlap - overlap_ratio * (Lanes(0.5) * smaller);
+  }
+
+  static void deposit(double* force, const Offset* i, const Offset* j, const double* from) {
+    if constexpr (symmetric)
+      add_to_rows(force, i, j, load(from), load(from + 24));
+    else
+      add_to_rows(force, i, j, load(from), load(from + 24), load(from + 48));
+  }
+
   // Adds what the pairs do to the force rows, moves their history on by dt. Returns by how much the largest overlap
   // exceeds the permitted one.
-  [[gnu::flatten]] static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input) {
-    const double *position = rows.position.data(), *velocity = rows.velocity.data();
-    double* force_rows = rows.force.data();
-    const Lanes zero = 0.0, dt = input.dt;
-    const Vec3Of<Lanes> nothing{zero, zero, zero};
+  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input) {
+    if (pairs.count == 0) return -1;
+    return act(rows.position.data(), rows.velocity.data(), rows.force.data(), pairs.i, pairs.j, pairs.kind,
+               pairs.history, pairs.count, tables, input);
+  }
+
+  // The law on a batch is one long chain of operations, each waiting for the last, while fetching rows and adding to rows
+  // wait for memory and shuffles. So every turn takes three batches: it adds up the last, acts on the present and
+  // collects the next, none of which needs the others, and the compiler mixes them (module.cmake asks it to). It may
+  // because nothing here overlaps in memory: __restrict.
+  [[gnu::flatten, gnu::noinline]] static double act(const double* __restrict position,
+                                                    const double* __restrict velocity, double* __restrict force,
+                                                    const Offset* __restrict i, const Offset* __restrict j,
+                                                    const std::uint32_t* __restrict kind, double* __restrict history,
+                                                    std::size_t count, const Tables& tables, const KernelInput input) {
+    const Lanes dt = input.dt, ratio = input.overlap_ratio;
     auto law = pack_laws(tables, [&](std::size_t c) { return Lanes(input.constants[c]); });
     Lanes excess = -1.0;
-
-    for (std::size_t p = 0; p < pairs.count; p += batch) {
-      const Offset *i = pairs.i + p, *j = pairs.j + p;
-      double* memory = pairs.history + p * history_numbers;
-      const Separation apart = separation(position, i, j);
-      const RelativeMotion moving = relative_motion(velocity, i, j);
-      Motion m{fold(input.images, apart.r), moving.v, moving.spin_sum, nothing, apart.reach,
-               moving.size_difference,      1.0};
-      Lanes mass_difference = zero;
-      if constexpr (!symmetric) {
-        const RowDifference d = difference(velocity, i, j, 4);
-        m.spin_difference = d.xyz;
-        mass_difference = d.fourth;
-      }
+    alignas(64) double in[2 * collected * batch], out[acted * batch] = {};
+    std::size_t now = 0, before = 0;
+    const std::size_t last = (count - 1) / batch * batch;
+    collect(position, velocity, i, j, input.images, in);
+    for (std::size_t p = 0; p <= last; p += batch) {
       if constexpr (!OneKind)
-        law = pack_laws(tables, [&](std::size_t c) { return gather(input.constants + c, pairs.kind + p); });
-
-      const auto geometry = laws::pair_geometry(m);
-      History history{load(memory), nothing};
-      if constexpr (rolls) history.roll = load(memory + 24);
-      const auto force =
-          laws::interact<true>(law, geometry, sizes(m, moving.inverse_mass, mass_difference), dt, history);
-      const auto touching = geometry.overlap > zero;
-      store(select(touching, history.spring, nothing), memory);
-      if constexpr (rolls) store(select(touching, history.roll, nothing), memory + 24);
-
-      const Lanes smaller = EqualRadii ? m.reach : m.reach - abs(m.size_difference);  // twice the smaller radius
-      excess = max(excess, geometry.overlap - Lanes(0.5 * input.overlap_ratio) * smaller);
-      const auto on_i = select(touching, force.force, nothing), torque_i = select(touching, force.torque_i, nothing);
-      if constexpr (symmetric)
-        add_to_rows(force_rows, i, j, on_i, torque_i);
-      else
-        add_to_rows(force_rows, i, j, on_i, torque_i, select(touching, force.torque_j, nothing));
+        law = pack_laws(tables, [&](std::size_t c) { return gather(input.constants + c, kind + p); });
+      const double* from = in + now;
+      now = collected * batch - now;
+      const std::size_t next = std::min(p + batch, last);
+      deposit(force, i + before, j + before, out);
+      excess = max(excess, interact(law, from, dt, ratio, history + p * history_numbers, out));
+      collect(position, velocity, i + next, j + next, input.images, in + now);
+      before = p;
     }
+    deposit(force, i + last, j + last, out);
     double largest = excess[0];
     for (int k = 1; k < Lanes::lanes; ++k) largest = excess[k] > largest ? excess[k] : largest;
     return largest;

@@ -21,19 +21,27 @@ void select(const Rows& rows, const Images& images, const PairSpan& from, double
   const Lanes twice_horizon = 2 * horizon, zero = 0.0, extra = margin;
   alignas(32) std::uint32_t key[8];
   out.reserve(from.count);
+  // The compiler is told that what is written is nothing that is read, or it would read everything again every time.
+  const Images box = images;
+  const double* __restrict position = rows.position.data(), * __restrict velocity = rows.velocity.data();
+  const Offset* __restrict i = from.i, * __restrict j = from.j;
+  const std::uint32_t* __restrict from_key = from.key;
+  Offset* __restrict out_i = out.i.data(), * __restrict out_j = out.j.data();
+  std::uint32_t* __restrict out_key = out.key.data();
+  const std::size_t pairs = from.count;
   std::size_t count = 0;
-  for (std::size_t p = 0; p < from.count; p += 8) {
-    const Separation s = separation(rows.position.data(), from.i + p, from.j + p);
-    const Vec3Of<Lanes> r = fold(images, s.r);
-    const Vec3Of<Lanes> v = difference(rows.velocity.data(), from.i + p, from.j + p, 0).xyz;
+  for (std::size_t p = 0; p < pairs; p += 8) {
+    const Separation s = separation(position, i + p, j + p);
+    const Vec3Of<Lanes> v = difference(velocity, i + p, j + p, 0).xyz;
+    const Vec3Of<Lanes> r = fold(box, s.r);
     const Lanes near = s.reach + extra;
     std::uint32_t bits = to_integer(dot(r, r) + twice_horizon * min(dot(r, v), zero) < near * near);
-    if (from.count - p < 8) bits &= (1u << (from.count - p)) - 1;
-    if (from.key == nullptr)
+    if (pairs - p < 8) bits &= (1u << (pairs - p)) - 1;
+    if (from_key == nullptr)
       for (std::uint32_t k = 0; k < 8; ++k) key[k] = static_cast<std::uint32_t>(p) + k;
-    compress(bits, from.i + p, &out.i[count]);
-    compress(bits, from.j + p, &out.j[count]);
-    count += static_cast<std::size_t>(compress(bits, from.key == nullptr ? key : from.key + p, &out.key[count]));
+    compress(bits, i + p, out_i + count);
+    compress(bits, j + p, out_j + count);
+    count += static_cast<std::size_t>(compress(bits, from_key == nullptr ? key : from_key + p, out_key + count));
   }
   out.count = count;
 }

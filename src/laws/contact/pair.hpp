@@ -22,8 +22,8 @@ struct PairMotion {
 template <class N>
 struct PairGeometry {
   Vec3Of<N> n, v, slip, spin;  // unit normal from j to i; v_ij; slip velocity v^t; relative rolling velocity
+  Vec3Of<N> arm_i, arm_j;      // -b_ij, b_ji: from the contact point to the centre of i, from that of j to it
   N overlap, vn, turn_rate;    // delta_n; v_ij . n; 1/|r_ij|, 0 at a plane
-  N arm_i, arm_j;              // centre to contact point, (d - delta_n)/2
 };
 
 // What the contact remembers.
@@ -49,24 +49,28 @@ struct PairLaw {
   Rolling rolling;
 };
 
-// The arms, b_ij = -arm_i n and b_ji = +arm_j n, add up to the distance and differ by r_i - r_j, so the spin terms of
-// the slip are arm_i omega_i + arm_j omega_j = (|r| (omega_i + omega_j) + (r_i - r_j) (omega_i - omega_j))/2, times n.
+// The arms are -b_ij = (|r| + r_i - r_j)/2 n and b_ji = (|r| - r_i + r_j)/2 n: the contact point lies halfway between
+// the surfaces. So the spin terms of the slip are omega_i x (-b_ij) + omega_j x b_ji
+// = (omega_i + omega_j) x r/2 + (omega_i - omega_j) x (r_i - r_j)/2 n. What does not wait for the root comes first.
 template <class N, bool EqualRadii>
 PairGeometry<N> pair_geometry(const PairMotion<N, EqualRadii>& m) {
-  const N distance2 = dot(m.r, m.r), inverse = rsqrt(distance2), distance = distance2 * inverse;
+  const Vec3Of<N> half = N(0.5) * m.r;
+  const Vec3Of<N> surface = m.v - cross(m.spin_sum, half);
+  const N distance2 = dot(m.r, m.r), inverse = rsqrt(distance2);
   PairGeometry<N> g;
   g.n = inverse * m.r;
   g.v = m.v;
-  g.overlap = m.reach - distance;
-  g.vn = dot(m.v, g.n);
+  g.overlap = m.reach - distance2 * inverse;
+  g.vn = dot(m.v, m.r) * inverse;
   g.turn_rate = m.turns * inverse;
-  g.arm_i = g.arm_j = N(0.5) * distance;
-  g.slip = m.v - g.vn * g.n - N(0.5) * cross(m.spin_sum, m.r);
+  g.arm_i = {half.x, half.y, half.z};  // number by number: g++ 12 keeps the memory of a copy in one piece
+  g.arm_j = {half.x, half.y, half.z};
+  g.slip = surface - g.vn * g.n;
   if constexpr (!EqualRadii) {
-    const N half = N(0.5) * m.size_difference;
-    g.slip = g.slip - half * cross(m.spin_difference, g.n);
-    g.arm_i = g.arm_i + half;
-    g.arm_j = g.arm_j - half;
+    const Vec3Of<N> shift = (N(0.5) * m.size_difference) * g.n;
+    g.slip = g.slip - cross(m.spin_difference, shift);
+    g.arm_i = half + shift;
+    g.arm_j = half - shift;
   }
   g.spin = m.spin_difference - dot(m.spin_difference, g.n) * g.n;
   return g;
@@ -116,24 +120,24 @@ void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairG
     }
     spring = stretched(spring, g.slip, g, dt);
   }
-  Vec3Of<N> force = N(-1) * (kt * spring + gamma * g.slip);
-  const N limit = law.tangential.mu * abs(out.normal), trial2 = dot(force, force);
+  const Vec3Of<N> dashpot = gamma * g.slip;
+  Vec3Of<N> pull = kt * spring + dashpot;  // minus the tangential force
+  const N limit = law.tangential.mu * abs(out.normal), trial2 = dot(pull, pull);
   const auto slides = trial2 > limit * limit;
   if (worthwhile(slides)) {
-    force = select(slides, limit * rsqrt(trial2), N(1)) * force;
+    pull = select(slides, limit * rsqrt(trial2), N(1)) * pull;
     if constexpr (Advance) {
-      const N minus_inverse = select(kt > N(0), N(-1) / kt, N(0));
-      const Vec3Of<N> cut = minus_inverse * (force + gamma * g.slip);
+      const N inverse = select(kt > N(0), N(1) / kt, N(0));
+      const Vec3Of<N> cut = inverse * (pull - dashpot);
       out.slide_loss = out.slide_loss + select(slides, slip_loss(kt, before, spring, cut), N(0));
       spring = select(slides, cut, spring);
     }
   }
   out.tangential_stiffness = kt;
-  out.tangential_damping = force + kt * spring;
-  out.force = out.force + force;
-  const Vec3Of<N> turning = cross(g.n, force);
-  out.torque_i = N(-1) * (g.arm_i * turning);
-  out.torque_j = N(-1) * (g.arm_j * turning);
+  out.tangential_damping = kt * spring - pull;
+  out.force = out.force - pull;
+  out.torque_i = cross(g.arm_i, pull);
+  out.torque_j = cross(g.arm_j, pull);
 }
 
 // Rolling part, Ai et al. 2011, model C.
