@@ -60,7 +60,7 @@ std::vector<Vec3> stored_base(double length, double width, double base_diameter,
 }
 
 void read_scenario(const Section& section, const scenario::GrainMaterial& material, std::uint64_t seed, DemInput& out) {
-  out.scenario = section.choose("kind", std::nullopt, {"chute", "column", "heap", "grains"});
+  out.scenario = section.choose("kind", std::nullopt, {"chute", "avalanche", "column", "heap", "grains"});
   const double d = material.diameter;
   const auto patch_of = [&](double ratio) {
     return stored_base(scenario::base_patch * ratio * d, scenario::base_patch * ratio * d, ratio * d, seed);
@@ -73,6 +73,13 @@ void read_scenario(const Section& section, const scenario::GrainMaterial& materi
     scenario::check_chute(chute, material);  // before the base is built
     out.state = scenario::make_chute(chute, material,
                                      stored_base(chute.length, chute.width, chute.base_size_ratio * d, seed), seed);
+  } else if (out.scenario == "avalanche") {
+    const auto avalanche = section.read<scenario::Avalanche>();
+    scenario::check_avalanche(avalanche, material);
+    const double base = avalanche.base_size_ratio * d;
+    out.state = scenario::make_avalanche(avalanche, material,
+                                         stored_base(scenario::avalanche_patch * base, avalanche.width, base, seed),
+                                         stored_bed(scenario::avalanche_recipe(avalanche, material, seed)));
   } else if (out.scenario == "column") {
     const auto column = section.read<scenario::Column>();
     out.column_radius = column.radius;
@@ -146,6 +153,7 @@ DemInput read_dem(config::Case& input) {
 
 void add_dem_topics(std::vector<Topic>& topics) {
   topics.push_back(topic<scenario::Chute>("scenario of model dem"));
+  topics.push_back(topic<scenario::Avalanche>("scenario of model dem"));
   topics.push_back(topic<scenario::Column>("scenario of model dem"));
   topics.push_back(topic<scenario::Heap>("scenario of model dem"));
   topics.push_back(topic<scenario::Singles>("scenario of model dem"));

@@ -203,6 +203,25 @@ void add_column(nlohmann::ordered_json& summary, const DemInput& in) {
   summary[in.scenario] = column;
 }
 
+// Where a pile has got to: x below which 1, 50 and 99 % of the mass lie.
+void add_avalanche(nlohmann::ordered_json& summary, const DemInput& in) {
+  const dem::Grains& g = in.state.grains;
+  std::vector<std::pair<double, double>> by_x;
+  double mass = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(g.flowing); ++i) {
+    by_x.emplace_back(wrap(in.state.box, g.x[i]).x, g.mass[i]);
+    mass += g.mass[i];
+  }
+  std::sort(by_x.begin(), by_x.end());
+  const auto quantile = [&](double share) {
+    double below = 0;
+    for (const auto& [x, m] : by_x)
+      if ((below += m) >= share * mass) return x;
+    return by_x.back().first;
+  };
+  summary["avalanche"] = {{"tail", quantile(0.01)}, {"middle", quantile(0.5)}, {"front", quantile(0.99)}};
+}
+
 }  // namespace
 
 void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double initial_energy) {
@@ -216,6 +235,7 @@ void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double
   summary["energy"] = energy;
   summary["max_overlap_over_radius"] = dem::max_overlap_over_radius(in.state);
   if (in.scenario == "column" || in.scenario == "heap") add_column(summary, in);
+  if (in.scenario == "avalanche") add_avalanche(summary, in);
 }
 
 std::vector<Derived> dem_derived(const DemInput& in) {

@@ -210,14 +210,16 @@ std::vector<double> shallow_series_row(const ShallowInput& in, const ShallowMaps
 }
 
 namespace {
-std::vector<double> bed_of(const ShallowInput& in) {
-  const shallow::Grid& g = in.solver.setup.grid;
-  std::vector<double> bed(static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.ny), 0.0);
-  if (!in.solver.bed.empty())
+// Without the halo.
+std::vector<double> inner(const shallow::Grid& g, const std::vector<double>& padded) {
+  std::vector<double> out(static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.ny), 0.0);
+  if (!padded.empty())
     for (int j = 0; j < g.ny; ++j)
-      for (int i = 0; i < g.nx; ++i) bed[flat(g, i, j)] = in.solver.bed[g.at(i, j)];
-  return bed;
+      for (int i = 0; i < g.nx; ++i) out[flat(g, i, j)] = padded[g.at(i, j)];
+  return out;
 }
+std::vector<double> bed_of(const ShallowInput& in) { return inner(in.solver.setup.grid, in.solver.bed); }
+std::vector<double> mass_of(const ShallowInput& in) { return inner(in.solver.setup.grid, in.state.now.D); }
 }  // namespace
 
 void write_shallow_snapshot(io::H5File& file, const std::string& group, const ShallowInput& in, const ShallowMaps& m) {
@@ -226,6 +228,12 @@ void write_shallow_snapshot(io::H5File& file, const std::string& group, const Sh
   file.write(group + "/h", m.h, dims, io::Compress::yes);
   file.write(group + "/u", m.u, dims, io::Compress::yes);
   file.write(group + "/v", m.v, dims, io::Compress::yes);
+  file.write(group + "/mass", mass_of(in), dims, io::Compress::yes);
+  if (g.two_d()) {
+    file.write(group + "/max_h", m.max_h, dims, io::Compress::yes);
+    file.write(group + "/max_speed", m.max_speed, dims, io::Compress::yes);
+    file.write(group + "/arrival", m.arrival, dims, io::Compress::yes);
+  }
   if (!file.exists("grid/bed")) {
     file.write("grid/bed", bed_of(in), dims, io::Compress::yes);
     const std::vector<double> corner = {g.x0, g.y0, g.dx, g.dy};

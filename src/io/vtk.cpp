@@ -9,35 +9,13 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "io/escape.hpp"
 #include "io/files.hpp"
 
 namespace bagnold::io {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string unescaped(std::string text) {
   constexpr std::array<std::pair<std::string_view, char>, 4> entities{

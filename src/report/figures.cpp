@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/gnuplot.hpp"
+#include "report/picture.hpp"
 
 namespace bagnold::report {
 namespace {
@@ -43,6 +44,15 @@ const std::vector<Plan>& series_plans() {
        "Energy now, plus what was lost, minus energy at the start: zero but for the error of the integration.",
        "residual",
        {{"ledger_residual", ""}},
+       false},
+      {"front", "Lower and upper end of the layer in time.", "x", {{"front", "front"}, {"tail", "tail"}}, false},
+      {"largest_thickness", "Largest thickness in time.", "largest h", {{"h_max", ""}}, false},
+      {"largest_speed", "Largest speed in time.", "largest speed", {{"speed_max", ""}}, false},
+      {"kinetic_energy", "Kinetic energy of the layer in time.", "kinetic energy", {{"kinetic_energy", ""}}, false},
+      {"mass_balance",
+       "Mass in the domain, plus what has left, minus what there was, over the mass: zero but for round-off.",
+       "relative error",
+       {{"mass_error_rel", ""}},
        false}};
   return plans;
 }
@@ -168,6 +178,28 @@ void add_series(std::vector<Figure>& all, std::span<const RunData> runs) {
           keep(all, figure_of({column, column + " in time.", column, {{column, ""}}, false}));
 }
 
+// gauge0_h, gauge1_h, ...: as many columns as the case has observers.
+void add_numbered(std::vector<Figure>& all, std::span<const RunData> runs) {
+  struct Family {
+    std::string name, begin, end, caption, label;
+  };
+  const Family families[] = {
+      {"gauge_thickness", "gauge", "_h", "Thickness at the gauges in time.", "h"},
+      {"gauge_speed", "gauge", "_speed", "Speed at the gauges in time.", "speed"},
+      {"discharge", "section", "_discharge", "Volume per time through the cross-sections.", "discharge"}};
+  for (const Family& family : families) {
+    Figure figure{family.name, family.caption, "t", family.label, false, false, {}};
+    for (const auto& run : runs) {
+      if (!run.series || run.series->names.empty()) continue;
+      for (const auto& column : run.series->names)
+        if (column.starts_with(family.begin) && column.ends_with(family.end))
+          figure.curves.push_back({legend(run, column.substr(0, column.size() - family.end.size()), runs.size() > 1),
+                                   thinned(run.series->cells[0]), thinned((*run.series)[column])});
+    }
+    keep(all, std::move(figure));
+  }
+}
+
 void add_profiles(std::vector<Figure>& all, std::span<const RunData> runs) {
   const bool several = runs.size() > 1;
   for (const auto& plan : profile_plans()) {
@@ -259,12 +291,6 @@ void add_steadiness(std::vector<Figure>& all, std::span<const RunData> runs) {
   keep(all, std::move(figure));
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
-
 }  // namespace
 
 std::vector<Figure> figures(std::span<const RunData> runs) {
@@ -274,16 +300,13 @@ std::vector<Figure> figures(std::span<const RunData> runs) {
   add_widths(all, runs);
   add_steadiness(all, runs);
   add_series(all, runs);
+  add_numbered(all, runs);
   return all;
 }
 
 void draw(const Figure& figure, const std::filesystem::path& file) {
-  std::string script =
-      "set border 3 lc rgb '#555555'\nset tics nomirror out\nset grid lc rgb '#dddddd' lw 0.5\n"
-      "set linetype 1 lc rgb '#0b5fa5'\nset linetype 2 lc rgb '#d1495b'\nset linetype 3 lc rgb '#2e8b57'\n"
-      "set linetype 4 lc rgb '#8a5fbf'\nset linetype 5 lc rgb '#e08e1b'\nset linetype 6 lc rgb '#444444'\n"
-      "set key outside top center horizontal\n";
-  script += fmt::format("set xlabel {}\nset ylabel {}\n", quoted(figure.x_label), quoted(figure.y_label));
+  std::string script = std::string(axes_style) + "set key outside top center horizontal\n";
+  script += fmt::format("set xlabel {}\nset ylabel {}\n", in_quotes(figure.x_label), in_quotes(figure.y_label));
   if (figure.log_x) script += "set logscale x\n";
   if (figure.log_y) script += "set logscale y\nset format y '10^{%T}'\n";
   std::vector<io::PlotData> data;
@@ -298,7 +321,7 @@ void draw(const Figure& figure, const std::filesystem::path& file) {
                                                                : "with lines lw 2";
     plots += fmt::format("{}${} using 1:2 {} lt {} {}", plots.empty() ? "plot " : ", ", name, style, color,
                          curve.label.empty() ? "notitle"
-                                             : "title " + quoted(curve.label) +
+                                             : "title " + in_quotes(curve.label) +
                                                    (curve.label.find("{/") == std::string::npos ? " noenhanced" : ""));
   }
   io::plot(file, script + plots, data);

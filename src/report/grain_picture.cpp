@@ -18,13 +18,13 @@ struct Disc {
   double x, z, radius, speed;
 };
 
-struct Layer {
+struct FrontLayer {
   std::vector<Disc> fixed, flowing;  // back to front
   double x_min = 1e300, x_max = -1e300, z_min = 1e300, z_max = -1e300;
 };
 
 // The grains within two diameters of the front, y smallest first seen.
-Layer front_layer(const io::H5File& file, const std::string& grains) {
+FrontLayer front_layer(const io::H5File& file, const std::string& grains) {
   auto x = file.read<Vec3>(grains + "/x");
   const auto v = file.read<Vec3>(grains + "/v");
   const auto diameter = file.read<double>(grains + "/diameter");
@@ -42,7 +42,7 @@ Layer front_layer(const io::H5File& file, const std::string& grains) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t left, std::size_t right) { return x[left].y > x[right].y; });
-  Layer layer;
+  FrontLayer layer;
   for (const std::size_t i : order) {
     const double depth = x[i].y - front, r = 0.5 * diameter[i];
     if (depth < 0 || depth > 4 * r) continue;
@@ -53,6 +53,14 @@ Layer front_layer(const io::H5File& file, const std::string& grains) {
     layer.z_max = std::max(layer.z_max, x[i].z + r);
   }
   return layer;
+}
+
+// The group of the grains of the last snapshot; empty when there is none.
+std::string last_grains(const io::H5File& states) {
+  if (!states.exists("snapshots")) return {};
+  const auto names = states.children("snapshots");
+  if (names.empty() || !states.exists("snapshots/" + names.back() + "/grains")) return {};
+  return "snapshots/" + names.back() + "/grains";
 }
 
 io::PlotData columns(const std::string& name, const std::vector<Disc>& discs) {
@@ -66,14 +74,16 @@ io::PlotData columns(const std::string& name, const std::vector<Disc>& discs) {
 
 }  // namespace
 
-bool draw_grains(const std::filesystem::path& run, const std::filesystem::path& file) {
+bool has_grains(const std::filesystem::path& run) {
   if (!std::filesystem::exists(run / "run.h5")) return false;
   const auto states = io::H5File::read_only(run / "run.h5");
-  if (!states.exists("snapshots")) return false;
-  const auto names = states.children("snapshots");
-  if (names.empty() || !states.exists("snapshots/" + names.back() + "/grains")) return false;
-  const Layer layer = front_layer(states, "snapshots/" + names.back() + "/grains");
-  if (layer.flowing.empty()) return false;
+  const auto grains = last_grains(states);
+  return !grains.empty() && states.int_attribute(grains, "flowing") > 0;
+}
+
+void draw_grains(const std::filesystem::path& run, const std::filesystem::path& file) {
+  const auto states = io::H5File::read_only(run / "run.h5");
+  const FrontLayer layer = front_layer(states, last_grains(states));
 
   std::string script = fmt::format(
       "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel 'x'\nset ylabel 'z'\nset border 3\nset "
@@ -89,7 +99,6 @@ bool draw_grains(const std::filesystem::path& run, const std::filesystem::path& 
   script += "$flowing using 1:2:3:4 with circles lc palette";
   const double aspect = (layer.z_max - layer.z_min) / (layer.x_max - layer.x_min);
   io::plot(file, script, data, {.width = 720, .height = std::clamp(static_cast<int>(600 * aspect) + 70, 160, 900)});
-  return true;
 }
 
 }  // namespace bagnold::report

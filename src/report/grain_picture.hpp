@@ -4,8 +4,11 @@
 
 namespace bagnold::report {
 
-// Draws the last snapshot of `run` (a run directory of the particle model) to `file` (.svg, .png or .pdf). Nothing is
-// drawn, and false returned, when the run holds no grains. Throws IoError when gnuplot is missing.
-bool draw_grains(const std::filesystem::path& run, const std::filesystem::path& file);
+// Whether `run`, a run directory, holds a snapshot with flowing grains.
+bool has_grains(const std::filesystem::path& run);
+
+// Draws the last snapshot of `run`, which has grains, to `file` (.svg, .png or .pdf). Throws IoError when gnuplot is
+// missing.
+void draw_grains(const std::filesystem::path& run, const std::filesystem::path& file);
 
 }  // namespace bagnold::report

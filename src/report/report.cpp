@@ -8,15 +8,18 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "io/escape.hpp"
 #include "io/files.hpp"
 #include "io/vtk.hpp"
 #include "report/figures.hpp"
 #include "report/grain_picture.hpp"
+#include "report/layer_pictures.hpp"
 #include "report/run_data.hpp"
 
 namespace bagnold::report {
 namespace {
 
+using io::escaped;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* style = R"(
@@ -28,26 +31,6 @@ figure { margin: 0 } figure img { width: 100%; border: 1px solid #ddd } figcapti
 table { border-collapse: collapse } th { text-align: left; font-weight: 600 } th, td { padding: .15rem 1.2rem .15rem 0; border-bottom: 1px solid #eee }
 td { font-variant-numeric: tabular-nums } pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; font-size: .85rem }
 )";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string text_of(const Json& value) {
   if (value.is_null()) return "–";
@@ -106,11 +89,39 @@ std::string headline(const std::vector<RunData>& runs) {
   return html;
 }
 
-std::string picture(const std::string& svg, const Figure& figure) {
+// Draws name.svg and name.<format> in `folder` by `draw(file)`; the <figure> that shows it.
+template <class Draw>
+std::string drawn(const std::filesystem::path& folder, const std::vector<std::string>& formats, const std::string& name,
+                  const std::string& caption, const Draw& draw) {
+  for (const auto& format : formats) draw(folder / (name + "." + format));
+  draw(folder / (name + ".svg"));
+  const auto svg = io::read_file(folder / (name + ".svg"));
   const auto bytes = io::base64({reinterpret_cast<const std::uint8_t*>(svg.data()), svg.size()});
   return fmt::format(
       "<figure><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\"><figcaption>{2}</figcaption></figure>\n",
-      escaped(figure.name), bytes, escaped(figure.caption));
+      escaped(name), bytes, escaped(caption));
+}
+
+// The pictures of the layers in the runs; several in one dimension are also compared, and the numbers of that written.
+std::vector<Picture> pictures_of_layers(const std::filesystem::path& folder,
+                                        const std::vector<std::filesystem::path>& directories,
+                                        const std::vector<RunData>& runs) {
+  std::vector<std::optional<LayerFile>> files;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    files.push_back(
+        LayerFile::open(directories[k], runs[k].summary.value("model", ""), runs[k].summary.value("scenario", "")));
+  std::vector<LayerRun> layers, lines;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (files[k]) layers.push_back({runs[k].name, &*files[k], runs[k].series ? &*runs[k].series : nullptr});
+  for (const LayerRun& run : layers)
+    if (!run.layers->grid().two_d()) lines.push_back(run);
+  auto pictures = layer_pictures(layers);
+  if (lines.size() > 1) {
+    const Comparison c = compare(lines);
+    write_comparison(folder / "compared.csv", c);
+    pictures.insert(pictures.begin(), compared_picture(c));
+  }
+  return pictures;
 }
 
 }  // namespace
@@ -125,21 +136,16 @@ void write_report(const std::vector<std::filesystem::path>& directories, const s
   std::filesystem::create_directories(folder, failed);
   if (failed) throw IoError(fmt::format("{}: error: cannot be created: {}", folder.string(), failed.message()));
   std::string pictures;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    const std::string name = runs.size() == 1 ? "grains" : "grains_" + runs[k].name;
-    const auto svg = folder / (name + ".svg");
-    if (!draw_grains(directories[k], svg)) continue;
-    for (const auto& format : formats) draw_grains(directories[k], folder / (name + "." + format));
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (has_grains(directories[k]))
+      pictures += drawn(folder, formats, runs.size() == 1 ? "grains" : "grains_" + runs[k].name,
+                        "The last snapshot of " + runs[k].name + " from the side, its front layer.",
+                        [&](const auto& file) { draw_grains(directories[k], file); });
+  for (const Picture& p : pictures_of_layers(folder, directories, runs))
     pictures +=
-        picture(io::read_file(svg),
-                {.name = name, .caption = "The last snapshot of " + runs[k].name + " from the side, its front layer."});
-  }
-  for (const auto& figure : figures(runs)) {
-    const auto svg = folder / (figure.name + ".svg");
-    draw(figure, svg);
-    for (const auto& format : formats) draw(figure, folder / (figure.name + "." + format));
-    pictures += picture(io::read_file(svg), figure);
-  }
+        drawn(folder, formats, p.name, p.caption, [&](const auto& file) { io::plot(file, p.script, p.data, p.size); });
+  for (const auto& figure : figures(runs))
+    pictures += drawn(folder, formats, figure.name, figure.caption, [&](const auto& file) { draw(figure, file); });
 
   std::string title;
   for (const auto& run : runs) title += (title.empty() ? "" : ", ") + run.name;

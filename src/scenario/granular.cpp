@@ -101,6 +101,17 @@ BedRecipe column_recipe(const Column& column, const GrainMaterial& material, std
   return recipe;
 }
 
+BedRecipe avalanche_recipe(const Avalanche& avalanche, const GrainMaterial& material, std::uint64_t seed) {
+  const double d = material.diameter;
+  BedRecipe recipe;
+  recipe.length = avalanche.extent / d;
+  recipe.width = avalanche.width / d;
+  recipe.thickness = avalanche.height / d + 1;
+  recipe.size_spread = material.size_spread;
+  recipe.seed = static_cast<std::int64_t>(seed);
+  return recipe;
+}
+
 namespace {
 double grain_count(const Chute& chute, double d) {
   return std::nearbyint((chute.length / d) * (chute.width / d) * (chute.fill_height / d));
@@ -160,6 +171,44 @@ dem::DemState make_column(const Column& column, const GrainMaterial& material, c
     diameters.push_back(size);
   }
   if (x.empty()) throw UnphysicalError("scenario.radius", "no grains: the column is smaller than a grain");
+  return with_flowing(std::move(state), x, diameters, material.density);
+}
+
+void check_avalanche(const Avalanche& avalanche, const GrainMaterial& material) {
+  const double largest = material.diameter * std::max(1 + material.size_spread, avalanche.base_size_ratio);
+  if (avalanche.width < 2 * largest)
+    throw UnphysicalError(
+        "scenario.width",
+        "a periodic box must be at least two diameters of the largest grain wide, or a grain meets its own image");
+  const double half = 0.5 * avalanche.extent;
+  if (avalanche.centre < half || avalanche.centre + half > avalanche.length)
+    throw UnphysicalError("scenario.centre", "the pile, centre -+ extent/2, must lie on the plane, 0 to length");
+}
+
+dem::DemState make_avalanche(const Avalanche& avalanche, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                             const Bed& bed) {
+  check_avalanche(avalanche, material);
+  const double d = material.diameter, base = avalanche.base_size_ratio * d;
+  const double theta = avalanche.angle_deg * std::numbers::pi / 180;
+  dem::DemState state;
+  state.gravity = avalanche.gravity * Vec3{std::sin(theta), 0, -std::cos(theta)};
+  const double tile = base > 0 ? avalanche_patch * base : avalanche.length;
+  const int tiles = std::max(1, static_cast<int>(std::ceil(avalanche.length / tile - 1e-9)));
+  state.box = {{0, 0, 0}, {tiles * tile, avalanche.width, avalanche.height}, {true, true, false}};
+  add_base(state, patch, base, material.density, tiles, 1, {tile, avalanche.width, 0});
+
+  std::vector<Vec3> x;
+  std::vector<double> diameters;
+  for (std::size_t i = 0; i < bed.x.size(); ++i) {
+    Vec3 r = d * bed.x[i];
+    const double s = 2 * r.x / avalanche.extent - 1, size = d * bed.diameter[i];
+    if (r.z > avalanche.height * (1 - s * s)) continue;
+    r.x += avalanche.centre - 0.5 * avalanche.extent;
+    r.z += 0.5 * base;  // clear of the tops of the base grains
+    x.push_back(r);
+    diameters.push_back(size);
+  }
+  if (x.empty()) throw UnphysicalError("scenario.height", "no grains: the pile is smaller than a grain");
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 

@@ -51,6 +51,31 @@ struct Chute {
   }
 };
 
+// A finite mass let go on a slope, the particle twin of a release of the shallow-layer model.
+struct Avalanche {
+  static constexpr std::string_view name = "avalanche";
+  static constexpr std::string_view summary =
+      "a pile of settled grains let go on a rough incline, periodic across the slope";
+  static constexpr std::string_view source = "Weinhart et al. 2012, section 5, for the base and the grains";
+  double angle_deg = 0, length = 0, width = 0, height = 0, extent = 0, centre = 0, base_size_ratio = 1, gravity = 1;
+  static constexpr auto fields() {
+    using S = Avalanche;
+    return std::tuple{
+        required("angle_deg", "deg", "inclination theta; gravity is g (sin theta, 0, -cos theta)", &S::angle_deg,
+                 Range{.lo = 0, .hi = 90, .hi_open = true}),
+        required("length", "length",
+                 "of the plane, rounded up to whole patches of base; what leaves it below comes in again above",
+                 &S::length, positive()),
+        required("width", "length", "periodic, across", &S::width, positive()),
+        required("height", "length", "H: the pile is H (1 - (2 (x - centre)/extent)^2) thick", &S::height, positive()),
+        required("extent", "length", "of the pile, downslope", &S::extent, positive()),
+        required("centre", "length", "x of the middle of the pile", &S::centre, positive()),
+        field("base_size_ratio", "-", "lambda: diameter of base grains / d; 0 is a flat plane", &S::base_size_ratio,
+              closed(0, 4)),
+        field("gravity", "length/time^2", "g", &S::gravity, positive())};
+  }
+};
+
 struct Column {
   static constexpr std::string_view name = "column";
   static constexpr std::string_view summary = "cylindrical column of settled grains released on a rough plane";
@@ -124,8 +149,9 @@ struct Singles {
 // What a bed must be like for a scenario: the base grains, and the column. Both empty beds for a flat plane.
 BedRecipe base_recipe(double length, double width, double base_diameter, std::uint64_t seed);
 BedRecipe column_recipe(const Column& column, const GrainMaterial& material, std::uint64_t seed);
-inline constexpr double base_patch =
-    10;  // side of the patch that tiles the plane of a column or heap, in base diameters
+BedRecipe avalanche_recipe(const Avalanche& avalanche, const GrainMaterial& material, std::uint64_t seed);
+// Side of the patch that tiles the plane of a column or heap, length of that of an avalanche, in base diameters.
+inline constexpr double base_patch = 10, avalanche_patch = 20;
 
 // Builders. `base`: centres of base grains in their own diameters (cut_base), ignored for base_size_ratio = 0.
 // Throw UnphysicalError for an empty fill or a box too small for its grains.
@@ -134,6 +160,9 @@ dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, cons
                          std::uint64_t seed);
 dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch,
                           const Bed& bed);
+void check_avalanche(const Avalanche& avalanche, const GrainMaterial& material);
+dem::DemState make_avalanche(const Avalanche& avalanche, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                             const Bed& bed);
 dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch,
                         std::uint64_t seed);
 dem::DemState make_singles(const Singles& singles, const std::vector<SingleGrain>& grains,

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "io/csv.hpp"
 #include "io/json.hpp"
@@ -80,6 +81,19 @@ TEST(Cases, TwoGrainsTomlKeepsItsEnergy) {
   EXPECT_NEAR(peak, 0.25, 1e-3);  // the normal part of the kinetic energy 1/2 goes through the spring
   EXPECT_LT(worst, 5e-4);         // of an energy of 1/2
   EXPECT_LT(std::abs(residual.back()), 1e-4);
+}
+
+TEST(Cases, AvalancheTomlRunsOutDownTheSlope) {
+  const Result r =
+      run_case("avalanche.toml",
+               "--set scenario.width=5 --set scenario.length=60 --set scenario.height=6 --set scenario.extent=24 "
+               "--set scenario.centre=16 --set scenario.angle_deg=28 --set time.end=12");
+  const auto& avalanche = r.summary["avalanche"];
+  EXPECT_NEAR(r.summary["grains"].get<double>(), 2.0 / 3 * 6 * 24 * 5 * 0.58 * 6 / std::numbers::pi, 60);
+  EXPECT_GT(avalanche["front"], 30);  // from 28
+  EXPECT_LT(avalanche["front"], 55);
+  EXPECT_GT(avalanche["middle"], 17);
+  EXPECT_GT(avalanche["tail"], 4);
 }
 
 TEST(Cases, ColumnTomlSpreadsAndKeepsItsMass) {
