@@ -31,11 +31,15 @@ Bed settle_bed(const BedRecipe& recipe) {
 
   const auto interval = static_cast<std::int64_t>(1 / state.dt);
   const double limit = 40 + 20 * std::sqrt(recipe.thickness);  // far more than any bed took
+  dem::Energies e;
   while (state.time() < limit) {
     dem::advance(state, laws, interval);
-    const dem::Energies e = dem::energies(state, laws);
+    e = dem::energies(state, laws);
     if (state.time() > 10 && e.kinetic() < 1e-5 * e.elastic()) return {state.grains.x, state.grains.diameter};
   }
+  // A grain that no other presses on may roll to and fro in its cage on the floor for ever. In a thin bed, with little
+  // elastic energy, that is enough to miss the criterion; 1e-6 m g d a grain is rest all the same.
+  if (e.kinetic() < 1e-6 * static_cast<double>(state.grains.flowing)) return {state.grains.x, state.grains.diameter};
   throw NumericalError(
       fmt::format("the bed of {} grains did not come to rest within t = {:g}", state.grains.flowing, limit));
 }

@@ -38,7 +38,7 @@ struct Bed {
   std::vector<double> diameter;
 };
 
-// At rest means E_kin < 1e-5 E_ela (Weinhart et al. 2012, section 6). Throws NumericalError if the bed does not settle.
+// At rest means E_kin < 1e-5 E_ela (Weinhart et al. 2012, section 6), or after a long time E_kin < 1e-6 m g d a grain. Throws NumericalError if the bed does not settle.
 Bed settle_bed(const BedRecipe& recipe);
 
 // The rough base: grains with centres in z in [9.3, 11], shifted down by 11 (Weinhart et al. 2012, section 5).
