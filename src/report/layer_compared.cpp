@@ -67,7 +67,7 @@ Comparison compare(const std::vector<LayerRun>& runs) {
     throw InputError(fmt::format("{} and {}: error: no snapshots at common times", c.names[0], c.names[1]));
   for (std::size_t i = 0; i < grid->nx; ++i) c.x.push_back(grid->x(i));
   for (auto* field : {&c.mass, &c.u}) field->resize(runs.size());
-  for (auto* end : {&c.tail, &c.middle, &c.front}) end->resize(runs.size());
+  c.where.resize(runs.size());
   for (std::size_t r = 0; r < runs.size(); ++r)
     for (const double t : c.t) {
       const LayerFile& layers = *runs[r].layers;
@@ -77,9 +77,8 @@ Comparison compare(const std::vector<LayerRun>& runs) {
       c.mass[r].push_back(averaged(layers.grid(), layer.mass, *grid));
       c.u[r].push_back(averaged(layers.grid(), momentum, *grid));
       for (std::size_t i = 0; i < c.x.size(); ++i) c.u[r].back()[i] /= c.mass[r].back()[i];  // 0/0: no mass
-      c.tail[r].push_back(quantile(layers.grid(), layer.mass, 0.01));
-      c.middle[r].push_back(quantile(layers.grid(), layer.mass, 0.5));
-      c.front[r].push_back(quantile(layers.grid(), layer.mass, 0.99));
+      for (std::size_t q = 0; q < Comparison::shares.size(); ++q)
+        c.where[r][q].push_back(quantile(layers.grid(), layer.mass, Comparison::shares[q]));
     }
   return c;
 }
@@ -104,9 +103,9 @@ void write_comparison(const std::filesystem::path& file, const Comparison& c) {
 }
 
 Picture compared_picture(const Comparison& c) {
-  constexpr int panel_height = 105, ends_height = 260;
+  constexpr int panel_height = 105, ends_height = 290;
   const auto panels = chosen(c.t.size(), 6);
-  const int height = 40 + panel_height * static_cast<int>(panels.size()) + ends_height;
+  const int height = 50 + panel_height * static_cast<int>(panels.size()) + ends_height;
   Picture picture{.name = "compared",
                   .caption =
                       "Mass per area of the runs at the same times; below, where the runs are: x below which 99, 50 "
@@ -122,7 +121,7 @@ Picture compared_picture(const Comparison& c) {
       "set multiplot\nset lmargin 10\nset rmargin 12\nset tmargin 0\nset bmargin 1\nset yrange [0:{}]\nset ytics "
       "autofreq\n"
       "set format x ''\nset size 1,{}\n",
-      1.1 * largest, share);
+      1.1 * largest, tic_step(largest, 4), share);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     std::string plots;
     for (std::size_t r = 0; r < c.names.size(); ++r) {
@@ -133,23 +132,24 @@ Picture compared_picture(const Comparison& c) {
     }
     const bool first = p == 0, last = p + 1 == panels.size();
     picture.script += fmt::format("set origin 0,{}\n{}\n{}\n{}\nset label 1 't = {:.4g}' at graph 1.01, 0.5\n{}\n",
-                                  1 - 30.0 / height - share * static_cast<double>(p + 1),
-                                  first ? "set key at graph 0.5,1.25 center horizontal" : "unset key",
+                                  1 - 45.0 / height - share * static_cast<double>(p + 1),
+                                  first ? "set key at graph 0.5,1.22 center horizontal" : "unset key",
                                   p == panels.size() / 2 ? "set ylabel 'mass per area'" : "unset ylabel",
                                   last ? "set format x '%g'\nset xlabel 'x' offset 0,0.5" : "", c.t[panels[p]], plots);
   }
   picture.script += fmt::format(
-      "set origin 0,0\nset size 1,{}\nunset label 1\nset bmargin 3\nset tmargin 2\nset yrange [*:*]\nset xlabel 't' "
+      "set origin 0,0\nset size 1,{}\nunset label 1\nset bmargin 4\nset ytics autofreq\nset tmargin 2\nset yrange "
+      "[*:*]\nset xlabel 't' "
       "offset 0,0\n"
-      "set ylabel 'x at 1, 50, 99 % of the mass'\nunset key\n",
+      "set ylabel 'x at 1, 50, 90, 99 % of the mass'\nunset key\n",
       static_cast<double>(ends_height) / height);
   std::string plots;
   for (std::size_t r = 0; r < c.names.size(); ++r) {
     const auto name = fmt::format("ends{}", r);
-    picture.data.push_back({name, {c.t, c.tail[r], c.middle[r], c.front[r]}});
-    for (int column = 2; column <= 4; ++column)
+    picture.data.push_back({name, {c.t, c.where[r][0], c.where[r][1], c.where[r][2], c.where[r][3]}});
+    for (int column = 2; column <= 5; ++column)
       plots += fmt::format("{}${} using 1:{} with lines lw 1.8 lt {}{}", plots.empty() ? "plot " : ", ", name, column,
-                           r + 1, column == 3 ? " dt 2" : "");
+                           r + 1, column == 3 || column == 4 ? " dt 2" : "");
   }
   picture.script += plots + "\nunset multiplot";
   return picture;

@@ -96,14 +96,6 @@ std::string contours(const Relief& r, std::vector<io::PlotData>& data) {
       r.x[0], step_x, r.y[0], step_y);
 }
 
-// A step of 1, 2 or 5 times a power of ten that leaves at most `most` tics on an axis.
-double tic_step(double length, int most) {
-  const double least = length / most, power = std::pow(10, std::floor(std::log10(least)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= least) return factor * power;
-  return 10 * power;
-}
-
 std::string map_style(const Relief& r) {
   return std::string(axes_style) +
          fmt::format(

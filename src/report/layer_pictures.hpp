@@ -1,5 +1,6 @@
 // Pictures of layers: profiles in time and x-t diagrams in one dimension, maps over a shaded relief in two.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "io/csv.hpp"
@@ -26,8 +27,9 @@ struct Comparison {
   std::vector<double> t, x;
   // [run][time][cell]: mass per area and its mean velocity, NaN without mass
   std::vector<std::vector<std::vector<double>>> mass, u;
-  // [run][time]: x below which 1, 50 and 99 % of the mass lie
-  std::vector<std::vector<double>> tail, middle, front;
+  // [run][share][time]: x below which that share of the mass lies
+  static constexpr std::array<double, 4> shares{0.01, 0.5, 0.9, 0.99};
+  std::vector<std::array<std::vector<double>, 4>> where;
 };
 Comparison compare(const std::vector<LayerRun>& runs);
 // Columns t, x, then mass and u of each run.

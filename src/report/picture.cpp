@@ -13,6 +13,13 @@ std::string in_quotes(const std::string& text) {
   return out + "'";
 }
 
+double tic_step(double length, int most) {
+  const double least = length / most, power = std::pow(10, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= least) return factor * power;
+  return 10 * power;
+}
+
 Palette thickness_palette() {
   static constexpr std::array<Rgb, 5> colours{
       {{255, 255, 255}, {189, 215, 231}, {107, 174, 214}, {33, 113, 181}, {8, 48, 107}}};

@@ -26,6 +26,9 @@ inline constexpr const char* axes_style =
 // The text as gnuplot reads it.
 std::string in_quotes(const std::string& text);
 
+// A step of 1, 2 or 5 times a power of ten that leaves at most about `most` tics on an axis of this length.
+double tic_step(double length, int most);
+
 using Rgb = std::array<double, 3>;  // 0 to 255
 using Palette = std::span<const Rgb>;
 Palette thickness_palette();                // white to dark blue, so that nothing is white

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The same steady flows by grains and by the shallow-layer solver (see README.md). Usage: run.sh [PROGRAM] [SCRATCH]
-# A particle run that is there already is used again.
+# A particle run that is there already is used again; the flow at 24 degrees, H = 20 is that of ../chute-h20-24deg.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(cd "$here/../../.." && pwd)
@@ -27,8 +27,8 @@ layer() {
 
 echo "theta_deg,H,regime,h,h_err,u,u_err,F,F_err,h_solver,u_solver,F_solver,difference,within" > "$here/results.csv"
 while read -r theta H end from; do
-  grains "$theta" "$H" "$end" "$from"
   summary=$scratch/$theta-$H/summary.json
+  if [ "$end" = stored ]; then summary=$here/../chute-h20-24deg/summary.json; else grains "$theta" "$H" "$end" "$from"; fi
   h=$(value "$summary" h) u=$(value "$summary" u_bar)
   # Density depends on velocity, so thickness changes with it: a second run starts with the steady velocity of the first.
   read -r _ u1 <<< "$(layer "$theta" "$h" "$u")"
@@ -42,7 +42,7 @@ while read -r theta H end from; do
 done <<END
 22 20 700 400
 24 10 500 250
-24 20 400 200
+24 20 stored -
 26 10 400 200
 26 20 400 200
 28 10 600 400

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# A finite mass let go on a slope, by grains and by the shallow-layer solver (see README.md).
+# Usage: run.sh [PROGRAM] [SCRATCH]. A particle run that is there already is used again.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+top=$(cd "$here/../../.." && pwd)
+program=${1:-$top/build/release/bagnold}
+scratch=${2:-$top/out/avalanche}
+mkdir -p "$scratch"
+
+[ -f "$scratch/grains/summary.json" ] || "$program" run "$top/cases/avalanche.toml" -o "$scratch/grains" --overwrite --quiet
+
+# name, options: the layer, the report of both, and the numbers
+compare() {
+  name=$1; shift
+  "$program" run "$here/layer.toml" -o "$scratch/$name" --overwrite --quiet "$@"
+  "$program" report "$scratch/grains" "$scratch/$name" -o "$scratch/report-$name/report.html"
+  awk -f "$here/metrics.awk" "$scratch/report-$name/figures/compared.csv" > "$scratch/$name.csv"
+}
+
+compare layer
+cp "$scratch/layer.csv" "$here/results.csv"
+cp "$scratch/report-layer/figures/compared.svg" "$here/compared.svg"
+
+# How much hangs on the treatment of the tip and on the shape factor: the largest and the mean L1, and the front at the end.
+compare tip_0 --set scheme.tip_depth=0
+compare tip_6 --set scheme.tip_depth=6
+compare alpha_1 --set closure.shape_factor.law=constant --set closure.shape_factor.alpha=1
+echo "layer,mean_l1,largest_l1,front_grains,front_layer" > "$here/sensitivity.csv"
+for name in layer tip_0 tip_6 alpha_1; do
+  awk -F, -v name=$name 'NR > 2 { s += $2; ++n; if ($2 > m) m = $2; g = $9; l = $10 }
+    END { printf "%s,%.3f,%.3f,%s,%s\n", name, s / n, m, g, l }' "$scratch/$name.csv" | tee -a "$here/sensitivity.csv"
+done
