@@ -14,13 +14,13 @@ mkdir -p "$scratch"
 compare() {
   name=$1; shift
   "$program" run "$here/layer.toml" -o "$scratch/$name" --overwrite --quiet "$@"
-  "$program" report "$scratch/grains" "$scratch/$name" -o "$scratch/report-$name/report.html"
+  "$program" report "$scratch/grains" "$scratch/$name" -o "$scratch/report-$name/report.html" --format png
   awk -f "$here/metrics.awk" "$scratch/report-$name/figures/compared.csv" > "$scratch/$name.csv"
 }
 
 compare layer
 cp "$scratch/layer.csv" "$here/results.csv"
-cp "$scratch/report-layer/figures/compared.svg" "$here/compared.svg"
+cp "$scratch/report-layer/figures/compared.png" "$here/compared.png"
 
 # How much hangs on the treatment of the tip and on the shape factor: the largest and the mean L1, and the front at the end.
 compare tip_0 --set scheme.tip_depth=0
