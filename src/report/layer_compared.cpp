@@ -108,8 +108,8 @@ Picture compared_picture(const Comparison& c) {
   const int height = 50 + panel_height * static_cast<int>(panels.size()) + ends_height;
   Picture picture{.name = "compared",
                   .caption =
-                      "Mass per area of the runs at the same times; below, where the runs are: x below which 99, 50 "
-                      "and 1 % of the mass lie.",
+                      "Mass per area of the runs at the same times; below, where the runs are: x below which 1, 50, "
+                      "90 and 99 % of the mass lie.",
                   .script = axes_style,
                   .data = {},
                   .size = {720, height}};
@@ -118,8 +118,7 @@ Picture compared_picture(const Comparison& c) {
     for (const auto& row : run) largest = std::max(largest, *std::max_element(row.begin(), row.end()));
   const double share = static_cast<double>(panel_height) / height;
   picture.script += fmt::format(
-      "set multiplot\nset lmargin 10\nset rmargin 12\nset tmargin 0\nset bmargin 1\nset yrange [0:{}]\nset ytics "
-      "autofreq\n"
+      "set multiplot\nset lmargin 10\nset rmargin 12\nset tmargin 0\nset bmargin 1\nset yrange [0:{}]\nset ytics {}\n"
       "set format x ''\nset size 1,{}\n",
       1.1 * largest, tic_step(largest, 4), share);
   for (std::size_t p = 0; p < panels.size(); ++p) {

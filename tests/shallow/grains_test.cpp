@@ -48,7 +48,7 @@ TEST(Grains, SteadyFlowsHaveTheVelocityOfTheSolver) {
     run.to(500);
     const Profile p = run.profile();
     const double F = p.u[1] / std::sqrt(p.h[1] * std::cos(rad(theta)));
-    EXPECT_NEAR(F, number("F_solver"), 2e-3) << theta << ' ' << h;  // the table is that of this solver
+    EXPECT_NEAR(F / number("F_solver"), 1, 0.01) << theta << ' ' << h;  // the table is that of this solver
     within += std::abs(F - number("F")) < *set.flow_rule_error ? 1 : 0;
   }
   EXPECT_GE(within, 3);
