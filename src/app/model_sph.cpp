@@ -12,6 +12,7 @@
 #include "io/hdf5.hpp"
 #include "io/vtk.hpp"
 #include "sph/constitutive.hpp"
+#include "sph/interpolate.hpp"
 #include "sph/observe.hpp"
 
 namespace bagnold::app {
@@ -67,6 +68,7 @@ class SphModel final : public Model {
             {"front", "m", "reach of the connected material"},
             {"front_raw", "m", "reach of the farthest particle"},
             {"height", "m", "of the connected material"},
+            {"speed_rms", "m/s", "root mean square, by mass: the creep of a deposit"},
             {"max_inertial_number", "", "largest i inside the flow so far"}};
   }
   std::vector<double> series_row() override {
@@ -78,7 +80,7 @@ class SphModel final : public Model {
       return {state_.time, state_.dt, energy, mean_velocity(), *std::max_element(u.begin(), u.end()), max_i_};
     }
     const sph::Front front = find_front(state_, work_, in_.model);
-    return {state_.time, state_.dt, energy, front.connected, front.raw, front.height, max_i_};
+    return {state_.time, state_.dt, energy, front.connected, front.raw, front.height, rms_speed(energy), max_i_};
   }
 
   std::string progress() override {
@@ -96,6 +98,7 @@ class SphModel final : public Model {
     file.write(group + "/eta", work_.viscosity);
     file.write(group + "/id", state_.particles.id);
     file.attribute(group, "t", state_.time);
+    file.attribute(group, "spacing", in_.model.spacing);
   }
 
   std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
@@ -110,7 +113,9 @@ class SphModel final : public Model {
                           {"rho", std::span<const double>(state_.particles.rho)},
                           {"i", std::span<const double>(p.i)},
                           {"eta", std::span<const double>(work_.viscosity)}});
-    return {{"particles", particles}};
+    const std::string fields = fmt::format("fields_{:05d}.vti", number);
+    write_fields(directory / fields);
+    return {{"particles", particles}, {"fields", fields}};
   }
 
   void write_results(const std::filesystem::path& directory) override {
@@ -156,15 +161,20 @@ class SphModel final : public Model {
     summary["max_inertial_number"] = max_i;
     if (on_plane()) {
       const auto flow = steady_flow(in_.plane, in_.model);
-      double error = 0, scale = 0, top = 0, surface = 0, p_error = 0, p_scale = 0;
+      constexpr int cells = 200;  // of the one-dimensional transient
+      const auto transient = transient_flow(in_.plane, in_.model, in_.plane.height, cells, {state_.time}).front();
+      double error = 0, scale = 0, top = 0, surface = 0, p_error = 0, p_scale = 0, t_error = 0, t_scale = 0;
       const sph::Particles& p = state_.particles;
       for (std::size_t i = 0; i < p.mass.size(); ++i) {
         const double z = p.x[1][i], u = flow.velocity(z), exact = flow.pressure(z, in_.model.grains().grain_density);
+        const double then = transient[static_cast<std::size_t>(std::clamp(z / in_.plane.height, 0.0, 0.999) * cells)];
+        t_error += (p.v[0][i] - then) * (p.v[0][i] - then), t_scale += then * then;
         error += (p.v[0][i] - u) * (p.v[0][i] - u), scale += u * u;
         p_error += (work_.pressure[i] - exact) * (work_.pressure[i] - exact), p_scale += exact * exact;
         if (z > in_.plane.height - 1.5 * in_.plane.spacing) surface += p.v[0][i], top += 1;
       }
       summary["profile_error_l2"] = scale > 0 ? std::sqrt(error / scale) : NAN;
+      summary["transient_error_l2"] = t_scale > 0 ? std::sqrt(t_error / t_scale) : NAN;
       summary["pressure_error_l2"] = std::sqrt(p_error / p_scale);
       summary["u_surface"] = top > 0 ? surface / top : NAN;
       summary["u_surface_exact"] = flow.u_surface;
@@ -180,6 +190,7 @@ class SphModel final : public Model {
     summary["runout"] = front.connected / in_.column.radius - 1;
     summary["runout_experiment"] = scenario::measured_runout(aspect, in_.geometry);
     summary["height_final"] = front.height;
+    summary["speed_rms"] = rms_speed(kinetic_energy(state_, in_.model));
   }
 
   std::vector<Derived> derived() override {
@@ -210,6 +221,7 @@ class SphModel final : public Model {
     last_mean_ = mean;
     last_time_ = state_.time;
   }
+  double rms_speed(double energy) const { return std::sqrt(2 * energy / total_mass(state_)); }
   // Fresh fields and three-dimensional positions; an infinite inertial number (no pressure) is written as NaN.
   Points points() {
     refresh(state_, work_, in_.model);
@@ -226,6 +238,26 @@ class SphModel final : public Model {
       out.i.push_back(std::isfinite(number) ? number : NAN);
     }
     return out;
+  }
+
+  // The same quantities on a grid; empty cells hold NaN.
+  void write_fields(const std::filesystem::path& path) const {
+    const sph::GridFields g = interpolate(state_, work_, in_.model);
+    std::vector<Vec3> v(g.speed.size());
+    for (std::size_t c = 0; c < v.size(); ++c)
+      v[c] = in_.model.dim == 2 ? Vec3{g.velocity[0][c], 0, g.velocity[1][c]}
+                                : Vec3{g.velocity[0][c], g.velocity[1][c], g.velocity[2][c]};
+    io::write_vti(path,
+                  {.origin = {g.origin[0], g.origin[1], g.origin[2]},
+                   .spacing = {g.spacing, g.spacing, g.spacing},
+                   .cells = g.cells},
+                  {{"filled", std::span<const double>(g.filled)},
+                   {"v", std::span<const Vec3>(v)},
+                   {"speed", std::span<const double>(g.speed)},
+                   {"p", std::span<const double>(g.pressure)},
+                   {"rho", std::span<const double>(g.density)},
+                   {"i", std::span<const double>(g.inertial_number)},
+                   {"eta", std::span<const double>(g.viscosity)}});
   }
 
   SphInput in_;

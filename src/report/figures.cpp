@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/gnuplot.hpp"
+#include "report/continuum_figures.hpp"
 #include "report/picture.hpp"
 
 namespace bagnold::report {
@@ -295,6 +296,7 @@ void add_steadiness(std::vector<Figure>& all, std::span<const RunData> runs) {
 
 std::vector<Figure> figures(std::span<const RunData> runs) {
   std::vector<Figure> all;
+  if (auto continuum = continuum_figures(runs); !continuum.empty()) return continuum;
   add_profiles(all, runs);
   add_strain(all, runs);
   add_widths(all, runs);

@@ -14,6 +14,7 @@
 #include "report/figures.hpp"
 #include "report/grain_picture.hpp"
 #include "report/layer_pictures.hpp"
+#include "report/particle_picture.hpp"
 #include "report/run_data.hpp"
 
 namespace bagnold::report {
@@ -89,17 +90,18 @@ std::string headline(const std::vector<RunData>& runs) {
   return html;
 }
 
-// Draws name.svg and name.<format> in `folder` by `draw(file)`; the <figure> that shows it.
+// Draws name.<shown> and name.<format> in `folder` by `draw(file)`; the <figure> that shows it.
 template <class Draw>
 std::string drawn(const std::filesystem::path& folder, const std::vector<std::string>& formats, const std::string& name,
-                  const std::string& caption, const Draw& draw) {
-  for (const auto& format : formats) draw(folder / (name + "." + format));
-  draw(folder / (name + ".svg"));
-  const auto svg = io::read_file(folder / (name + ".svg"));
-  const auto bytes = io::base64({reinterpret_cast<const std::uint8_t*>(svg.data()), svg.size()});
+                  const std::string& caption, const Draw& draw, const std::string& shown = "svg") {
+  for (const auto& format : formats)
+    if (format != shown) draw(folder / (name + "." + format));
+  draw(folder / (name + "." + shown));
+  const auto image = io::read_file(folder / (name + "." + shown));
+  const auto bytes = io::base64({reinterpret_cast<const std::uint8_t*>(image.data()), image.size()});
   return fmt::format(
-      "<figure><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\"><figcaption>{2}</figcaption></figure>\n",
-      escaped(name), bytes, escaped(caption));
+      "<figure><img alt=\"{0}\" src=\"data:image/{1};base64,{2}\"><figcaption>{3}</figcaption></figure>\n",
+      escaped(name), shown == "svg" ? "svg+xml" : shown, bytes, escaped(caption));
 }
 
 // The pictures of the layers in the runs; several in one dimension are also compared, and the numbers of that written.
@@ -136,6 +138,12 @@ void write_report(const std::vector<std::filesystem::path>& directories, const s
   std::filesystem::create_directories(folder, failed);
   if (failed) throw IoError(fmt::format("{}: error: cannot be created: {}", folder.string(), failed.message()));
   std::string pictures;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (has_particles(directories[k]))  // ten thousand circles make a heavy .svg
+      pictures += drawn(
+          folder, formats, runs.size() == 1 ? "particles" : "particles_" + runs[k].name,
+          "Particles of " + runs[k].name + ", coloured by speed.",
+          [&](const auto& file) { draw_particles(directories[k], file); }, "png");
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (has_grains(directories[k]))
       pictures += drawn(folder, formats, runs.size() == 1 ? "grains" : "grains_" + runs[k].name,

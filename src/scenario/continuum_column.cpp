@@ -29,13 +29,24 @@ sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geom
         if (const double y = (static_cast<double>(b) + 0.5) * dp; x * x + y * y < column.radius * column.radius)
           base.push_back({x, y});
   }
-  auto p = sph::make_particles(static_cast<std::int64_t>(base.size()) * up, model.dim);
+  // Rows of the lattice below the surface, over each place of the base.
+  const double slope = std::tan(column.slope_deg * M_PI / 180);
+  std::vector<std::int64_t> rows;
+  std::int64_t count = 0;
+  for (const auto& [x, y] : base) {
+    const double lost = std::sqrt(x * x + y * y) * slope / dp;
+    rows.push_back(std::max<std::int64_t>(0, up - static_cast<std::int64_t>(std::llround(std::min(lost, 1e9)))));
+    count += rows.back();
+  }
+  auto p = sph::make_particles(count, model.dim);
   const auto vertical = static_cast<std::size_t>(model.vertical());
   const double rho0 = model.phi_max() * model.grains().grain_density, Kt = model.grains().compressibility;
   std::size_t i = 0;
-  for (const auto& [x, y] : base)
-    for (std::int64_t b = 0; b < up; ++b, ++i) {
-      const double z = (static_cast<double>(b) + 0.5) * dp, pressure = rho0 * 9.81 * (static_cast<double>(up) * dp - z);
+  for (std::size_t place = 0; place < base.size(); ++place)
+    for (std::int64_t b = 0; b < rows[place]; ++b, ++i) {
+      const auto [x, y] = base[place];
+      const double z = (static_cast<double>(b) + 0.5) * dp,
+                   pressure = rho0 * 9.81 * (static_cast<double>(rows[place]) * dp - z);
       p.x[0][i] = x;
       if (model.dim == 3) p.x[1][i] = y;
       p.x[vertical][i] = z;

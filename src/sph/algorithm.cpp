@@ -160,6 +160,8 @@ void check(const Model& model) {
                           "shifting and volume correction need implicit or explicit_euler stepping");
   if (model.stepping != Stepping::minatti2015 && model.numerics.artificial_viscosity > 0)
     throw UnphysicalError("numerics.artificial_viscosity", "needs minatti2015 stepping");
+  if (model.numerics.viscosity_rounds > 0 && !(model.corrected() && model.stepping == Stepping::implicit))
+    throw UnphysicalError("numerics.viscosity_rounds", "need the variational operator and implicit stepping");
   for (std::size_t d = 0; d < 3; ++d)
     if (model.period[d] > 0 && model.period[d] < 2.2 * model.h())
       throw UnphysicalError("scenario.length",

@@ -16,24 +16,28 @@ struct Laws {
   Dilatancy dilatancy;
   laws::eos::CompressibleGrains grains;
   Regularisation regularisation;
-  double static_friction, d0;
+  double static_friction, d0, bulk, dilatant;
   int dim;
 };
 
 // Eight particles: pressure, viscosity and the new root.
 template <class L>
-void eight(const L& law, const Pack& rho, const Pack& gamma, Pack& root, Pack& pressure, Pack& viscosity) {
+void eight(const L& law, const Pack& rho, const Pack& gamma, Pack& root, Pack& pressure, Pack& viscosity, Pack& bulk) {
   // d/d0 = rho_s*^(-1/D): in 2D it cancels sqrt(rho_s) in i; in 3D rho_s*^(1/6) remains, taken from the last root.
   Pack shear = gamma * law.grains.shear_scale(law.d0);
   if (law.dim == 3)
     for (int k = 0; k < Pack::lanes; ++k) shear.set(k, shear[k] * std::pow(1 + root[k] * root[k], 1.0 / 6));
   const Pack r = rho / (law.grains.grain_density * law.dilatancy.phi_max);
-  root = laws::eos::largest_root(law.dilatancy.cubic(r, shear), root);
+  const auto cubic = law.dilatancy.cubic(r, shear);
+  root = laws::eos::largest_root(cubic, root);
   pressure = law.grains.pressure(root);
   // eta0 = p a (mu - mu_s)/i with a = i/gamma, in the form that is finite at rest and at p = 0 (eq. 47).
   const Pack safe = max(root, Pack(1e-12)), a = law.grains.shear_scale(law.d0) / safe;
   const Pack eta0 = pressure * a * law.excess(Pack(gamma * a));
   viscosity = law.regularisation.viscosity(Pack(law.static_friction * pressure), eta0, gamma);
+  // dp/dgamma = 2 p/gamma sensitivity, finite at rest
+  const Pack dp = 2 * pressure * laws::eos::sensitivity(cubic, safe) / max(gamma, Pack(1e-12));
+  bulk = law.bulk * viscosity + law.dilatant * dp;
 }
 
 template <class L>
@@ -51,11 +55,12 @@ double sweep(const L& law, Work& w, Particles& p) {
       };
       // lanes beyond the last particle are filled with loose material: no pressure, no viscosity
       const Pack rho = load(p.rho, 0.1 * law.grains.grain_density), gamma = load(w.shear_rate, 0);
-      Pack root = load(p.root, 0), pressure, viscosity;
-      eight(law, rho, gamma, root, pressure, viscosity);
+      Pack root = load(p.root, 0), pressure, viscosity, bulk;
+      eight(law, rho, gamma, root, pressure, viscosity, bulk);
       std::memcpy(p.root.data() + i, &root, lanes * sizeof(double));
       std::memcpy(w.pressure.data() + i, &pressure, lanes * sizeof(double));
       std::memcpy(w.viscosity.data() + i, &viscosity, lanes * sizeof(double));
+      std::memcpy(w.bulk.data() + i, &bulk, lanes * sizeof(double));
       most = max(most, Pack(viscosity / rho));
     }
     largest[static_cast<std::size_t>(begin / block)] = bagnold::largest(most);
@@ -70,14 +75,15 @@ double sweep(const L& law, Work& w, Particles& p) {
 double constitutive(Work& w, Particles& p, const Model& model) {
   const Material& m = model.material;
   return std::visit(
-      [&](const auto& rheology, const auto& dilatancy, const auto& grains, const auto& regularisation) {
+      [&](const auto& rheology, const auto& dilatancy, const auto& grains, const auto& regularisation,
+          const auto& viscous) {
         const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(dilatancy)>,
                    std::decay_t<decltype(regularisation)>>
-            law{rheology.excess(),          dilatancy,        grains,   regularisation,
-                rheology.static_friction(), m.grain_diameter, model.dim};
+            law{rheology.excess(), dilatancy,    grains,           regularisation, rheology.static_friction(),
+                m.grain_diameter,  viscous.bulk, viscous.dilatant, model.dim};
         return sweep(law, w, p);
       },
-      m.rheology, m.dilatancy, m.eos, m.regularisation);
+      m.rheology, m.dilatancy, m.eos, m.regularisation, model.viscous);
 }
 
 double inertial_number(const Model& model, double gamma, double root) {

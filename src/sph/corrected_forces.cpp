@@ -13,7 +13,7 @@ namespace {
 // Fields of a record of the pressure sweep.
 template <int D>
 struct PressureRecord {
-  static constexpr int area = 0, volume = 1, eta = 2, P = 3, size = 3 + D * D;  // P = p V B
+  static constexpr int area = 0, volume = 1, eta = 2, zeta = 3, P = 4, size = 4 + D * D;  // P = p V B
 };
 // Fields of a record of the second sweep of the viscous force; the last two are seen in the frame of the parent.
 template <int D>
@@ -47,6 +47,7 @@ void write_pressure_records(Work& w, std::int64_t n) {
     to[F::area] = w.area[i];
     to[F::volume] = w.volume[i];
     to[F::eta] = w.viscosity[i];
+    to[F::zeta] = w.bulk[i];
     for (int m = 0; m < D * D; ++m)
       to[F::P + m] = w.pressure[i] * w.volume[i] * w.correction[i * D * D + static_cast<std::size_t>(m)];
   });
@@ -62,25 +63,24 @@ void write_pressure_records(Work& w, std::int64_t n) {
 // Diagonal block of m - dt A without m and dt: residual pairs, the stress of the neighbours, and the own stress where
 // neighbours are missing. Stored as upper triangle.
 template <int D>
-void store_block(Work& w, const Model& model, const Particles& p, std::size_t i, double isotropic, const Pack* pairs,
-                 double neighbours) {
+void store_block(Work& w, const Model& model, const Particles& p, std::size_t i, const Pack* pairs, double neighbours) {
   double g2 = 0;
   for (std::size_t a = 0; a < D; ++a) g2 += w.imbalance[a][i] * w.imbalance[a][i];
-  const double own = 2 * w.viscosity[i] * w.volume[i];
+  const double own = 2 * w.viscosity[i] * w.volume[i], isotropic = (w.viscosity[i] / 3 + w.bulk[i]) * w.volume[i];
   double* block = w.preconditioner.data() + i * (D * (D + 1) / 2);
   for (std::size_t a = 0, m = 0; a < D; ++a)
     for (std::size_t b = a; b < D; ++b, ++m) {
-      block[m] = lane_sum(pairs[m]) + own * isotropic * w.imbalance[a][i] * w.imbalance[b][i];
+      block[m] = lane_sum(pairs[m]) + isotropic * w.imbalance[a][i] * w.imbalance[b][i];
       if (a == b) block[m] += 0.5 * (neighbours + own * g2);
     }
   if (model.axisymmetric) {
     const double ir = inverse_radius(model, p.x[0][i]);
-    block[0] += own * ir * ir * (0.5 + isotropic);
+    block[0] += (0.5 * own + isotropic) * ir * ir;
   }
 }
 
 template <int D, class Mean>
-void pressure_sweep(Work& w, const Particles& p, const Model& model, double coefficient, double isotropic) {
+void pressure_sweep(Work& w, const Particles& p, const Model& model, double coefficient) {
   using F = PressureRecord<D>;
   const double tiny = 1e-12 * model.h() * model.h();
   parallel_for(p.size(), [&](std::int64_t k) {
@@ -99,22 +99,22 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
       const Pack kk = Mean::of(Pack(self[F::eta]), other[F::eta]) * weight * f / (r2 + tiny);
       w.k[q] = kk;
       Quartic<D>::add(quartic, 0.5 * kk, r);
-      const Pack stress = 2 * other[F::eta] * other[F::volume] * ai * ai;
-      around += stress * r2;
+      const Pack stress = other[F::volume] * ai * ai, isotropic = (other[F::eta] / 3 + other[F::zeta]) * stress;
+      around += 2 * other[F::eta] * stress * r2;
       for (int a = 0, m = 0; a < D; ++a)
-        for (int b = a; b < D; ++b, ++m) block[m] += (kk + stress * isotropic) * r[a] * r[b];
+        for (int b = a; b < D; ++b, ++m) block[m] += (kk + isotropic) * r[a] * r[b];
     });
     for (std::size_t d = 0; d < D; ++d) w.acceleration[d][i] = model.gravity[d] + lane_sum(force[d]) / p.mass[i];
     if (model.axisymmetric)
       w.acceleration[0][i] += w.pressure[i] * w.volume[i] * inverse_radius(model, p.x[0][i]) / p.mass[i];
     for (std::size_t m = 0; m < Quartic<D>::size; ++m) w.quartic[i * Quartic<D>::size + m] = lane_sum(quartic[m]);
-    store_block<D>(w, model, p, i, isotropic, block, lane_sum(around));
+    store_block<D>(w, model, p, i, block, lane_sum(around));
   });
 }
 
-// First sweep: L = S B and T = 2 eta V e' - (H - K:L); leaves T B and L in the stress records, hoop force in `force`.
+// First sweep: L = S B and T = V (2 eta e' + zeta tr L 1) - (H - K:L); leaves T B and L in the stress records, hoop force in `force`.
 template <int D>
-void stress_sweep(Work& w, const Particles& p, const Model& model, double trace_factor, const Field& v, Field& force) {
+void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
   using F = StressRecord<D>;
   auto& records = stress_records<D>(w);
   const std::int64_t n = p.size();
@@ -153,15 +153,15 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, double trace_
     const double ir = model.axisymmetric ? inverse_radius(model, p.x[0][i]) : 0, hoop = v[0][i] * ir;
     double trace = hoop;
     for (int d = 0; d < D; ++d) trace += L[d * D + d];
-    trace *= trace_factor;
-    const double twice = 2 * w.viscosity[i] * w.volume[i];
+    const double twice = 2 * w.viscosity[i] * w.volume[i], mean = w.bulk[i] * w.volume[i] * trace;
+    trace /= 3;
     Matrix<D> T;
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b)
-        T[a * D + b] =
-            twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) - left[a * D + b] + taken[a * D + b];
+        T[a * D + b] = twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) + (a == b ? mean : 0) -
+                       left[a * D + b] + taken[a * D + b];
     const Matrix<D> TB = product<D>(T, B);
-    if (model.axisymmetric) force[0][i] = -twice * (hoop - trace) * ir;
+    if (model.axisymmetric) force[0][i] = -(twice * (hoop - trace) + mean) * ir;
     double* to = records.at(k);
     for (int d = 0; d < D; ++d) to[F::v + d] = self[d];
     to[F::area] = self[D];
@@ -181,6 +181,18 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, double trace_
       }
   });
   std::fill_n(records.at(w.pairs.elements(n) - 1), F::width, 0.0);
+}
+
+// sqrt(2 e:e) of the gradients the first sweep left in the records.
+template <int D>
+void read_shear_rate(Work& w, const Particles& p, const Model& model, const Field& v) {
+  const auto& records = stress_records<D>(w);
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    Matrix<D> L;
+    std::copy_n(records.at(k) + StressRecord<D>::L, D * D, L.begin());
+    w.shear_rate[i] = shear_rate<D>(L, model.axisymmetric ? v[0][i] * inverse_radius(model, p.x[0][i]) : 0);
+  });
 }
 
 // Second sweep: force of the stresses of both particles, and of what their linear fields miss.
@@ -218,34 +230,34 @@ void force_sweep(Work& w, const Particles& p, const Model& model, Field& force) 
   });
 }
 
-// Stress of the model: 2 eta (e - factor tr(e) 1), with bulk viscosity zeta = bulk eta: factor = 1/3 - bulk/2.
-double trace_factor(const Model& model) {
-  return 1.0 / 3 - 0.5 * std::visit([](const auto& v) { return v.bulk; }, model.viscous);
-}
-
 }  // namespace
 
 void corrected_pressure_and_coefficients(Work& w, const Particles& p, const Model& model) {
   w.k.resize(w.pairs.index.size() / Pack::lanes);
   const double coefficient = std::visit([&](const auto& v) { return v.coefficient(model.dim); }, model.viscous);
-  const double isotropic = 0.5 - trace_factor(model);
   std::visit(
       [&](const auto& mean) {
         using Mean = std::decay_t<decltype(mean)>;
         if (model.dim == 2)
-          write_pressure_records<2>(w, p.size()), pressure_sweep<2, Mean>(w, p, model, coefficient, isotropic);
+          write_pressure_records<2>(w, p.size()), pressure_sweep<2, Mean>(w, p, model, coefficient);
         else
-          write_pressure_records<3>(w, p.size()), pressure_sweep<3, Mean>(w, p, model, coefficient, isotropic);
+          write_pressure_records<3>(w, p.size()), pressure_sweep<3, Mean>(w, p, model, coefficient);
       },
       model.mean);
 }
 
-void corrected_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
-  const double factor = trace_factor(model);
+void corrected_shear_rate(Work& w, const Particles& p, const Model& model, const Field& v) {
   if (model.dim == 2)
-    stress_sweep<2>(w, p, model, factor, v, force), force_sweep<2>(w, p, model, force);
+    stress_sweep<2>(w, p, model, v, w.force), read_shear_rate<2>(w, p, model, v);
   else
-    stress_sweep<3>(w, p, model, factor, v, force), force_sweep<3>(w, p, model, force);
+    stress_sweep<3>(w, p, model, v, w.force), read_shear_rate<3>(w, p, model, v);
+}
+
+void corrected_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
+  if (model.dim == 2)
+    stress_sweep<2>(w, p, model, v, force), force_sweep<2>(w, p, model, force);
+  else
+    stress_sweep<3>(w, p, model, v, force), force_sweep<3>(w, p, model, force);
 }
 
 }  // namespace bagnold::sph

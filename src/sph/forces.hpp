@@ -15,6 +15,8 @@ void pair_coefficients(Work& work, const Particles& particles, const Model& mode
 
 // force = A v: the viscous force [N] on every particle for velocities v, linear, symmetric, negative semi-definite.
 void corrected_viscous_force(Work& work, const Particles& particles, const Model& model, const Field& v, Field& force);
+// shear_rate of velocities v at the positions kinematics(corrected) saw.
+void corrected_shear_rate(Work& work, const Particles& particles, const Model& model, const Field& v);
 void pair_viscous_force(Work& work, const Particles& particles, const Model& model, const Field& v, Field& force);
 
 }  // namespace bagnold::sph

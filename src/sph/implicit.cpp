@@ -6,6 +6,7 @@
 #include "core/parallel.hpp"
 #include "sph/forces.hpp"
 #include "sph/small_tensor.hpp"
+#include "sph/yield.hpp"
 
 namespace bagnold::sph {
 namespace {
@@ -24,18 +25,28 @@ void invert_blocks(Work& w, const Particles& p, double dt) {
   });
 }
 
-// z = P^-1 r; returns r.z
+// r.P^-1 r, and the squared size of what is left of the momentum balance, r.m^-1 r.
+struct Products {
+  double preconditioned = 0, balance = 0;
+  Products& operator+=(const Products& other) {
+    preconditioned += other.preconditioned, balance += other.balance;
+    return *this;
+  }
+};
+
+// z = P^-1 r
 template <int D>
-double precondition(Work& w, std::int64_t n, const Field& r, Field& z) {
-  return parallel_sum<double>(n, [&](std::int64_t k) {
+Products precondition(Work& w, const Particles& p, const Field& r, Field& z) {
+  return parallel_sum<Products>(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const Matrix<D> m = from_upper<D>(w.preconditioner.data() + k * (D * (D + 1) / 2));
-    double product = 0;
+    Products product;
     for (std::size_t a = 0; a < D; ++a) {
       double sum = 0;
       for (std::size_t b = 0; b < D; ++b) sum += m[a * D + b] * r[b][i];
       z[a][i] = sum;
-      product += sum * r[a][i];
+      product.preconditioned += sum * r[a][i];
+      product.balance += r[a][i] * r[a][i] / p.mass[i];
     }
     return product;
   });
@@ -61,13 +72,13 @@ int solve(Work& w, State& state, const Model& model, double dt) {
   });
   viscous_force(w, p, model, x, q);
   each([&](std::size_t d, std::size_t i) { r[d][i] += dt * q[d][i]; });
-  double rz = precondition<D>(w, n, r, z);
+  Products products = precondition<D>(w, p, r, z);
   each([&](std::size_t d, std::size_t i) { v[d][i] = z[d][i]; });
   const double mass = parallel_sum<double>(n, [&](std::int64_t i) { return p.mass[static_cast<std::size_t>(i)]; });
   const double g_dt = model.numerics.cg_tolerance * std::max(model.gravity_norm(), 1e-12) * dt,
                limit = mass * g_dt * g_dt;
   int iterations = 0;
-  while (!(rz <= limit)) {  // also for NaN
+  while (!(products.balance <= limit)) {  // also for NaN
     viscous_force(w, p, model, v, q);
     const double curvature = parallel_sum<double>(n, [&](std::int64_t k) {
       const auto i = static_cast<std::size_t>(k);
@@ -82,14 +93,15 @@ int solve(Work& w, State& state, const Model& model, double dt) {
       throw NumericalError(
           fmt::format("sph: implicit viscosity: no convergence at t = {:g} s, step {}, after {} iterations "
                       "(residual {:g}, wanted {:g}, curvature {:g})",
-                      state.time, state.step, iterations, std::sqrt(rz), std::sqrt(limit), curvature));
-    const double alpha = rz / curvature;
+                      state.time, state.step, iterations, std::sqrt(products.balance), std::sqrt(limit), curvature));
+    const double alpha = products.preconditioned / curvature;
     each([&](std::size_t d, std::size_t i) {
       x[d][i] += alpha * v[d][i];
       r[d][i] -= alpha * q[d][i];
     });
-    const double next = precondition<D>(w, n, r, z), beta = next / rz;
-    rz = next;
+    const double before = products.preconditioned;
+    products = precondition<D>(w, p, r, z);
+    const double beta = products.preconditioned / before;
     each([&](std::size_t d, std::size_t i) { v[d][i] = z[d][i] + beta * v[d][i]; });
   }
   each([&](std::size_t d, std::size_t i) { p.rate[d][i] = (x[d][i] - p.rate[d][i]) / dt; });
@@ -107,7 +119,19 @@ void viscous_force(Work& w, const Particles& p, const Model& model, const Field&
 }
 
 int solve_viscous(Work& w, State& state, const Model& model, double dt) {
-  return model.dim == 2 ? solve<2>(w, state, model, dt) : solve<3>(w, state, model, dt);
+  Particles& p = state.particles;
+  int iterations = 0;
+  for (std::int64_t round = 0;; ++round) {
+    iterations += model.dim == 2 ? solve<2>(w, state, model, dt) : solve<3>(w, state, model, dt);
+    if (round == model.numerics.viscosity_rounds || reweigh_viscosity(w, p, model) < model.numerics.viscosity_tolerance)
+      return iterations;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim);
+         ++d)  // back to v(n); the guess becomes what was found
+      parallel_for(p.size(), [&](std::int64_t k) {
+        const auto i = static_cast<std::size_t>(k);
+        p.v[d][i] -= dt * p.rate[d][i];
+      });
+  }
 }
 
 }  // namespace bagnold::sph

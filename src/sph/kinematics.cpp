@@ -144,21 +144,9 @@ void add_ghosts(Sums<D>& sums, const PairShape<D, Kernel>& shape, const Model& m
   });
 }
 
-// sqrt(2 e:e) of the symmetric part of L, with the hoop rate of axisymmetric flow.
+// sqrt(2 e:e) from S + S^T with its diagonal halved.
 template <int D>
-double shear_rate(const Matrix<D>& L, double hoop) {
-  double sum = hoop * hoop;
-  for (int a = 0; a < D; ++a)
-    for (int b = 0; b < D; ++b) {
-      const double e = 0.5 * (L[a * D + b] + L[b * D + a]);
-      sum += e * e;
-    }
-  return std::sqrt(2 * sum);
-}
-
-// The same from S + S^T with its diagonal halved.
-template <int D>
-double shear_rate(const std::array<double, D*(D + 1) / 2>& E) {
+double shear_rate_of_sum(const std::array<double, D*(D + 1) / 2>& E) {
   double sum = 0;
   for (std::size_t a = 0, m = 0; a < D; ++a)
     for (std::size_t b = a; b < D; ++b, ++m) sum += (a == b ? 2 : 1) * E[m] * E[m];
@@ -196,7 +184,7 @@ void store(Work& w, const Particles& p, const Model& model, std::size_t i, const
       w.shear_rate[i] = shear_rate<D>(L, hoop);
     }
   }
-  if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate<D>(s.E);
+  if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate_of_sum<D>(s.E);
 }
 
 template <int D, class Kernel, Kinematics what, bool moments>

@@ -30,8 +30,10 @@ struct Numerics {
   double volume_correction = 0;     // pulls the density back to the one of the positions, 1 is usual
   double density_diffusion = 0;     // delta: removes the alternating pressure no gradient sees, 0.1 is usual
   double base_friction = 0;         // 1: detached particles on the base feel mu_s g
-  double cg_tolerance = 1e-3;       // residual over (sum m g^2 dt^2)^1/2, in the norm of the preconditioner
+  double cg_tolerance = 1e-3;       // what is left of the momentum balance, rms, over g
   std::int64_t cg_max_iterations = 5000;
+  std::int64_t viscosity_rounds = 0;  // implicit: times the viscosity is taken again from the velocity found
+  double viscosity_tolerance = 0.01;  // those end when the stress used is that close to the law
   static constexpr auto fields() {
     using S = Numerics;
     return std::tuple{
@@ -48,8 +50,12 @@ struct Numerics {
               &S::density_diffusion, closed(0, 1)),
         field("base_friction", "", "1: detached particles on the base feel mu_s g, 0: they slide", &S::base_friction,
               closed(0, 1)),
-        field("cg_tolerance", "", "implicit: residual over (sum m g^2 dt^2)^1/2", &S::cg_tolerance, open(0, 1)),
-        field("cg_max_iterations", "", "implicit: more is an error", &S::cg_max_iterations, at_least(1))};
+        field("cg_tolerance", "", "implicit: rms acceleration left unbalanced, over g", &S::cg_tolerance, open(0, 1)),
+        field("cg_max_iterations", "", "implicit: more is an error", &S::cg_max_iterations, at_least(1)),
+        field("viscosity_rounds", "", "implicit, variational: times at most that viscosity is taken again from v(n+1)",
+              &S::viscosity_rounds, at_least(0)),
+        field("viscosity_tolerance", "", "relative error of the stress at which those end", &S::viscosity_tolerance,
+              open(0, 1))};
   }
 };
 

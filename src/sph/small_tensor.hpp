@@ -44,6 +44,18 @@ inline double smallest_eigenvalue(const Matrix<3>& m) {
   return q + 2 * p * std::cos(angle + 2 * M_PI / 3);
 }
 
+// sqrt(2 e:e) of the symmetric part of L, with the hoop rate of axisymmetric flow.
+template <int D>
+inline double shear_rate(const Matrix<D>& L, double hoop) {
+  double sum = hoop * hoop;
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) {
+      const double e = 0.5 * (L[a * D + b] + L[b * D + a]);
+      sum += e * e;
+    }
+  return std::sqrt(2 * sum);
+}
+
 // Inverse of a matrix that has one.
 inline Matrix<2> inverse(const Matrix<2>& m) {
   const double d = 1 / (m[0] * m[3] - m[1] * m[2]);

@@ -4,7 +4,7 @@ namespace bagnold::sph {
 
 void Work::resize(std::int64_t count, int dim) {
   const auto n = static_cast<std::size_t>(count), d = static_cast<std::size_t>(dim);
-  for (auto* a : {&volume, &area, &density_rate, &shear_rate, &pressure, &viscosity, &coverage, &concentration})
+  for (auto* a : {&volume, &area, &density_rate, &shear_rate, &pressure, &viscosity, &bulk, &coverage, &concentration})
     a->resize(n);
   correction.resize(n * d * d);
   gradient.resize(n * d * d);

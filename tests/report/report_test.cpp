@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "io/files.hpp"
 #include "io/gnuplot.hpp"
+#include "io/hdf5.hpp"
 #include "io/json.hpp"
 #include "report/figures.hpp"
 
@@ -137,6 +138,61 @@ TEST_F(Report, IsOneFileWithEverythingInIt) {
   EXPECT_TRUE(has("<th>flow.alpha</th><td>–</td>"));
   EXPECT_TRUE(has("&lt;angle&gt; &amp; all"));
   EXPECT_TRUE(fs::exists(root / "figures" / "velocity.svg") && fs::exists(root / "figures" / "velocity.png"));
+}
+
+TEST_F(Report, ContinuumColumnsShowFrontScalingAndParticles) {
+  const auto column = [&](const std::string& name, double aspect, double runout) {
+    const auto dir = root / name;
+    fs::create_directories(dir);
+    io::write_file(dir / "case.toml", "model = \"sph\"\n");
+    io::write_json(dir / "summary.json", nlohmann::ordered_json{{"model", "sph"},
+                                                                {"scenario", "column"},
+                                                                {"status", "completed"},
+                                                                {"aspect_ratio", aspect},
+                                                                {"r0", 0.1},
+                                                                {"runout", runout}});
+    io::write_csv(dir / "series.csv", {{"t", "", ""}, {"front", "", ""}, {"front_raw", "", ""}, {"height", "", ""}},
+                  {{0, 1}, {0.1, 0.2}, {0.1, 0.21}, {0.1, 0.08}});
+    auto file = io::H5File::create(dir / "run.h5");
+    for (int k = 0; k < 3; ++k) {
+      const std::string group = "snapshots/00000" + std::to_string(k);
+      file.write(group + "/x", std::vector<Vec3>{{0.01, 0, 0.01}, {0.1 + 0.05 * k, 0, 0.01}});
+      file.write(group + "/v", std::vector<Vec3>{{0, 0, 0}, {1.0 * k, 0, 0}});
+      file.attribute(group, "t", 0.1 * k);
+      file.attribute(group, "spacing", 0.02);
+    }
+    file.close();
+  };
+  column("low", 0.5, 0.6);
+  column("tall", 2, 2.2);
+  const std::vector<RunData> runs{read_run(root / "low"), read_run(root / "tall")};
+  const auto all = figures(runs);
+  const auto *front = find(all, "front"), *scaling = find(all, "scaling");
+  ASSERT_NE(front, nullptr);
+  EXPECT_NEAR(front->curves[0].y[1], 0.1, 1e-15);  // advance, not position
+  ASSERT_NE(scaling, nullptr);
+  EXPECT_EQ(scaling->curves[2].y, (std::vector<double>{0.6, 2.2}));
+  write_report({root / "low"}, root / "low.html");
+  EXPECT_TRUE(fs::exists(root / "figures" / "particles.png"));
+  EXPECT_NE(io::read_file(root / "low.html").find("data:image/png;base64,"), std::string::npos);
+}
+
+TEST_F(Report, ContinuumPlaneShowsTheAnalyticProfiles) {
+  io::write_json(root / "steady" / "summary.json",
+                 nlohmann::ordered_json{{"model", "sph"}, {"scenario", "inclined_plane"}, {"status", "completed"}});
+  io::write_csv(root / "steady" / "profile.csv",
+                {{"z", "m", ""}, {"u_x", "", ""}, {"u_x_exact", "", ""}, {"p", "", ""}, {"p_exact", "", ""}},
+                {{0, 1}, {0, 2}, {0, 3}, {4, 0}, {5, 0}}, io::CsvHeader::names_and_units);
+  io::write_csv(root / "steady" / "series.csv", {{"t", "", ""}, {"u_mean", "", ""}}, {{0, 1}, {0, 2}});
+  const std::vector<RunData> runs{read_run(root / "steady")};
+  const auto all = figures(runs);
+  for (const auto& [name, exact] : {std::pair{"velocity", 3.0}, std::pair{"pressure", 0.0}}) {
+    const auto* figure = find(all, name);
+    ASSERT_NE(figure, nullptr) << name;
+    ASSERT_EQ(figure->curves.size(), 2u);
+    EXPECT_EQ(figure->curves[1].x[1], exact);
+    EXPECT_EQ(figure->curves[1].stroke, Stroke::dashed);
+  }
 }
 
 TEST_F(Report, ADirectoryWithoutARunIsAnInputError) {

@@ -37,7 +37,7 @@ inline void improve(Model& m) {
   m.numerics.volume_correction = 1;
   m.numerics.density_diffusion = 0.03;
   m.numerics.base_friction = 1;
-  m.numerics.cg_tolerance = 3e-4;
+  m.numerics.cg_tolerance = 1e-3;
 }
 
 // A block of `count`^dim particles of unit spacing turned by `angle`, moved at random by up to `disorder`.

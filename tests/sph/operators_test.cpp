@@ -28,6 +28,7 @@ Case prepare(Model model, int count, double angle, double disorder) {
     const auto id = static_cast<std::uint64_t>(p.id[i]);
     c.work.pressure[i] = 1000 * random_unit(id, 20);
     c.work.viscosity[i] = 1 + 100 * std::pow(random_unit(id, 21), 4);
+    c.work.bulk[i] = c.work.viscosity[i] * random_unit(id, 22);
   }
   if (model.corrected())
     corrected_pressure_and_coefficients(c.work, p, model);
@@ -267,7 +268,6 @@ double potential(const Case& c, const Field& v) {
   const Particles& p = c.state.particles;
   const std::size_t n = p.mass.size();
   const double h = c.model.h(), a = (D == 2 ? 7 / (64 * M_PI) : 21 / (256 * M_PI)) / std::pow(h, D);
-  const auto bulk = std::get<laws::viscous::Variational>(c.model.viscous).bulk;
   const auto geometry = [&](std::size_t i, std::size_t j, std::array<double, D>& r) {
     double r2 = 0;
     for (std::size_t d = 0; d < D; ++d) r[d] = p.x[d][i] - p.x[d][j], r2 += r[d] * r[d];
@@ -295,7 +295,7 @@ double potential(const Case& c, const Field& v) {
     for (std::size_t k = 0; k < D; ++k)
       for (std::size_t l = 0; l < D; ++l) ee += std::pow(0.5 * (L[k * D + l] + L[l * D + k]), 2);
     const double V = p.mass[i] / p.rho[i], eta = c.work.viscosity[i];
-    sum += V * eta * (ee - trace * trace / 3 + 0.5 * bulk * trace * trace);
+    sum += V * (eta * (ee - trace * trace / 3) + 0.5 * c.work.bulk[i] * trace * trace);
     for (std::size_t j = 0; j < n; ++j) {
       if (i == j) continue;
       const double other = c.work.viscosity[j], f = geometry(i, j, r);

@@ -11,6 +11,13 @@ struct Cubic {
   T c2, c1, c0, lower, bulk;
 };
 
+// (s/y) dy/ds at the root y, for c2 and c0 proportional to s and c1 constant: how strongly pressure (y^2) follows shear.
+template <class T>
+T sensitivity(const Cubic<T>& f, T y) {
+  const T slope = (3 * y + 2 * f.c2) * y + f.c1;
+  return -(f.c2 * y * y + f.c0) / max(T(slope * y), T(1e-300));
+}
+
 // Newton from `guess` (any number). The first step lands right of the root, where convexity makes the rest monotone;
 // it is clipped to an upper bound because f' may be tiny at `lower`. Residual of the root: relative 1e-12 of y.
 template <class T>

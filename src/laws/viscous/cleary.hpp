@@ -15,7 +15,7 @@ struct Cleary {
   static constexpr std::string_view source = "Cleary 1998; Minatti & Paris 2015, eqs 26, 27, 31";
   static constexpr bool corrected = false;
   static constexpr auto fields() { return std::tuple<>{}; }
-  static constexpr double bulk = 5.0 / 3;  // inherent in forces along r_ij; documentation only
+  static constexpr double bulk = 5.0 / 3, dilatant = 0;  // inherent in forces along r_ij; documentation only
   static constexpr double coefficient(int dimensions) { return 2.0 * (dimensions + 2); }
 };
 

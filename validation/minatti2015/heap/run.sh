@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Creep of a resting heap (see README.md). Usage: run.sh [PROGRAM] [SCRATCH]
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+top=$(cd "$here/../../.." && pwd)
+program=${1:-$top/build/release/bagnold}
+scratch=${2:-$top/out/heap}
+
+value() { sed -n "s/^ *\"$2\": \(.*[^,]\),\{0,1\}\$/\1/p" "$1" | head -1; } # of a key of summary.json
+echo "m0_s,viscosity_rounds,slope_deg,speed_rms,creep_d_per_sqrt_H_over_g,git_hash" > "$here/results.csv"
+for run in "1.2 0 22" "1e3 4 22" "1e5 0 22" "1e5 4 22" "1e5 4 28"; do
+  read -r m0 rounds slope <<< "$run"
+  directory=$scratch/$m0-$rounds-$slope
+  "$program" run "$top/cases/column-3.toml" -o "$directory" --overwrite --quiet --set scenario.geometry=planar --set scenario.height=0.04 \
+    --set scenario.radius=0.099 --set scenario.slope_deg="$slope" --set scenario.spacing=0.003 --set time.end=0.5 --set material.m0="$m0" \
+    --set numerics.viscosity_rounds="$rounds" --set numerics.cg_tolerance=1e-4 --set output.vtk_every=10 --set output.snapshot_every=10
+  s=$directory/summary.json
+  awk -v OFS=, -v m0="$m0" -v rounds="$rounds" -v slope="$slope" -v v="$(value "$s" speed_rms)" -v hash="$(value "$s" git_hash | tr -d '"')" \
+    'BEGIN { print m0, rounds, slope, v, sprintf("%.3g", v*sqrt(0.04/9.81)/0.32e-3), hash }' | tee -a "$here/results.csv"
+done

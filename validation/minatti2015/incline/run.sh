@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Flow down a plane (see README.md). Usage: run.sh [PROGRAM] [SCRATCH] [RUN...]
+# Runs what is named (default: everything) and has not been completed in SCRATCH, then rewrites results.csv from all that is there.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+top=$(cd "$here/../../.." && pwd)
+program=${1:-$top/build/release/bagnold}
+scratch=${2:-$top/out/incline}
+shift $(($# < 2 ? $# : 2))
+
+literal="--set numerics.operator=minatti2015 --set numerics.stepping=minatti2015 --set numerics.shifting=0
+         --set numerics.volume_correction=0 --set numerics.density_diffusion=0 --set numerics.cfl=0.5"
+options() {
+  echo "--set output.series_every=0.1 --set output.vtk_every=100 --set output.snapshot_every=100"
+  case $1 in
+    improved-1s | improved-3s | improved-6.5s) local t=${1#*-}; echo "--set time.end=${t%s}" ;;
+    improved-steady) echo "--set time.end=20" ;;
+    rows-*) awk -v n="${1#*-}" 'BEGIN { dp = 0.1/n; print "--set time.end=3 --set scenario.spacing=" dp " --set scenario.length=" (n > 20 ? 20*dp : 0.1) }' ;;
+    literal-alpha0) echo "--set time.end=9 $literal" ;;
+    literal-alpha0.05) echo "--set time.end=9 $literal --set numerics.artificial_viscosity=0.05" ;;
+    *) echo "unknown run $1" >&2; return 1 ;;
+  esac
+}
+runs=("$@")
+[ ${#runs[@]} = 0 ] && runs=(improved-1s improved-3s improved-6.5s improved-steady rows-10 rows-20 rows-40 rows-80 literal-alpha0 literal-alpha0.05)
+for run in "${runs[@]}"; do
+  grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
+  # shellcheck disable=SC2046
+  "$program" run "$top/cases/incline.toml" -o "$scratch/$run" --overwrite --quiet $(options "$run") || echo "$run failed" >&2
+done
+
+value() { sed -n "s/^ *\"$2\": \(.*[^,]\),\{0,1\}\$/\1/p" "$1" | head -1; }
+{
+  echo "run,particles,time_s,steps,profile_error_l2,transient_error_l2,pressure_error_l2,u_surface,u_surface_exact,git_hash"
+  for directory in "$scratch"/*/; do
+    s=$directory/summary.json
+    [ -f "$s" ] || continue
+    echo "$(basename "$directory"),$(value "$s" particles),$(value "$s" time),$(value "$s" steps),$(value "$s" profile_error_l2),$(value "$s" transient_error_l2),$(value "$s" pressure_error_l2),$(value "$s" u_surface),$(value "$s" u_surface_exact),$(value "$s" git_hash | tr -d '"')"
+  done
+} > "$here/results.csv"
+cat "$here/results.csv"
