@@ -52,9 +52,11 @@ std::array<int, 3> shape_cells(CellGrid& grid, const Box& box, std::span<const V
 void sort_into_cells(CellGrid& grid, const Box& box, std::span<const Vec3> x, double cutoff) {
   const std::array<int, 3> count = shape_cells(grid, box, x, cutoff);
   grid.axis = {0, 1, 2};
-  std::stable_sort(grid.axis.begin(), grid.axis.end(), [&](int a, int b) {
-    return count[static_cast<std::size_t>(a)] > count[static_cast<std::size_t>(b)];
-  });
+  // Slabs along a periodic direction hold about as much each; those along the height of a flow do not.
+  const auto rank = [&](int k) {
+    return (box.periodic[static_cast<std::size_t>(k)] ? 5 : 4) * count[static_cast<std::size_t>(k)];
+  };
+  std::stable_sort(grid.axis.begin(), grid.axis.end(), [&](int a, int b) { return rank(a) > rank(b); });
   for (std::size_t k = 0; k < 3; ++k) {
     grid.count[k] = count[static_cast<std::size_t>(grid.axis[k])];
     grid.periodic[k] = box.periodic[static_cast<std::size_t>(grid.axis[k])];

@@ -20,7 +20,7 @@ constexpr Image opposite(Image code) { return static_cast<Image>(26 - code); }
 inline constexpr Image same_image = image_code(0, 0, 0);
 std::array<Vec3, 27> image_shifts(const Box& box);
 
-// Cells are stored with the direction of most cells slowest; layers of cells along it form slabs. The pairs of slab
+// Cells are stored with the direction of most cells (a periodic one if it has nearly as many) slowest; layers of cells along it form slabs. The pairs of slab
 // s involve points of slabs s and s + 1 only, so slabs of one parity can be worked on at the same time.
 struct CellGrid {
   std::array<int, 3> axis{0, 1, 2};   // directions, slowest first
