@@ -68,7 +68,10 @@ TEST(Watch, SeesTheStepsAskedForAndDisturbsNothing) {
 }
 
 TEST(Watch, RowsAndContactsAreThoseOfTheState) {
-  if (!fast::available) GTEST_SKIP() << "builds without AVX-512 have the plain engine only";
+  if (!fast::available) {  // nothing to look into
+    EXPECT_FALSE(fast::supports(flow(materials()[0])));
+    return;
+  }
   for (const Material& material : materials()) {
     DemState s = flow(material);
     std::vector<Vec3> x, v, force(s.grains.x.size());
