@@ -11,34 +11,42 @@ namespace {
 constexpr int density_iterations = 3;
 
 // Friction, density, stress ratio and shape factor of `n` cells that hold D > 0 and run at speeds s = F sqrt(h). One loop
-// an iteration: the chain of operations on one pack is long, but that on the next is independent of it.
+// an iteration: the chain of operations on one pack is long, but that on the next is independent of it. The last step is
+// so short that friction follows it along the secant.
 template <class Law>
 void measure(const PreparedClosure& p, int n, const Row& D, const Row& s, CellRow& row) {
   const typename Law::Prepared& law = prepared_law<Law>(p).dynamic;
-  alignas(64) Row h_before, e_before;
+  alignas(64) Row h_before, e_before, mu_before;
   const auto mu_at = [&](const Pack& h, int k) { return law.mu(h, Pack::load(s + k) * rsqrt(h)); };
-  const auto excess = [&](const Pack& h, int k) { return p.rho_of_mu(mu_at(h, k)) * h - Pack::load(D + k); };
+  const auto excess = [&](const Pack& h, const Pack& mu, int k) { return p.rho_of_mu(mu) * h - Pack::load(D + k); };
   for (int k = 0; k < n; k += Pack::lanes) {
-    const Pack h = Pack::load(D + k) * (1 / p.rho), e = excess(h, k);
+    const Pack h = Pack::load(D + k) * (1 / p.typical_rho), mu = mu_at(h, k), e = excess(h, mu, k);
     h.store(h_before + k);
     e.store(e_before + k);
-    (h - e * (1 / p.rho)).store(row.h + k);
+    mu.store(mu_before + k);
+    (h - e * (1 / p.typical_rho)).store(row.h + k);
   }
-  for (int iteration = 0; iteration < density_iterations; ++iteration)
-    for (int k = 0; k < n; k += Pack::lanes) {
-      const Pack h = Pack::load(row.h + k), e = excess(h, k), change = e - Pack::load(e_before + k);
-      const Pack step = e * (h - Pack::load(h_before + k)) * change / (change * change + 1e-200);  // 0 once converged
-      h.store(h_before + k);
-      e.store(e_before + k);
-      (h - step).store(row.h + k);
-    }
-  for (int k = 0; k < n; k += Pack::lanes) {
-    const Pack h = Pack::load(row.h + k), mu = mu_at(h, k);
-    (Pack::load(D + k) / h).store(row.rho + k);
-    p.K_of_mu(mu).store(row.K + k);
-    if (p.alpha_varies)
-      p.strain.prepared_factor(h, max(min(mu, p.mu_hi), p.mu_lo), p.strain_mu1, p.strain_mu2).store(row.alpha + k);
-  }
+  const auto iterate = [&](int k, auto&& then) __attribute__((always_inline)) {
+    const Pack h = Pack::load(row.h + k), mu = mu_at(h, k), e = excess(h, mu, k), change = e - Pack::load(e_before + k);
+    const Pack part = e * change / (change * change + 1e-200);  // of the last step; 0 once converged
+    const Pack h_new = h - part * (h - Pack::load(h_before + k)), mu_new = mu - part * (mu - Pack::load(mu_before + k));
+    then(h, e, mu, h_new, mu_new);
+    h_new.store(row.h + k);
+  };
+  for (int iteration = 1; iteration < density_iterations; ++iteration)
+    for (int k = 0; k < n; k += Pack::lanes)
+      iterate(k, [&](const Pack& h, const Pack& e, const Pack& mu, const Pack&, const Pack&) {
+        h.store(h_before + k);
+        e.store(e_before + k);
+        mu.store(mu_before + k);
+      });
+  for (int k = 0; k < n; k += Pack::lanes)
+    iterate(k, [&](const Pack&, const Pack&, const Pack&, const Pack& h, const Pack& mu) {
+      (Pack::load(D + k) / h).store(row.rho + k);
+      p.K_of_mu(mu).store(row.K + k);
+      if (p.alpha_varies)
+        p.strain.prepared_factor(h, max(min(mu, p.mu_hi), p.mu_lo), p.strain_mu1, p.strain_mu2).store(row.alpha + k);
+    });
 }
 
 template <class Law, bool constant, bool terrain>
@@ -46,41 +54,47 @@ void closure_row(const PreparedClosure& p, int n, const double* D_row, const dou
                  CellRow& row) {
   const laws::BasalFriction<typename Law::Prepared>& law = prepared_law<Law>(p);
   const double dry = p.dry_density_depth, least = dry > 1e-100 ? dry : 1e-100;
-  alignas(64) Row safe, speed;
-  row.any_rest = false;
-  for (int k = 0; k < n; k += Pack::lanes) {
-    const Pack D = Pack::load_unaligned(D_row + k), D_safe = max(D, least);
-    const Pack inv = select(D > dry, 1.0 / D_safe, 0.0);
-    const Pack u = Pack::load_unaligned(Mx + k) * inv, v = Pack::load_unaligned(My + k) * inv;
-    Pack speed2 = u * u + v * v, inverse_normal = 1 / p.normal;
-    if constexpr (terrain) {
-      const Pack w = u * Pack::load(row.bx + k) + v * Pack::load(row.by + k);
-      speed2 = speed2 + w * w;
-      inverse_normal = 1.0 / (p.normal * Pack::load(row.c + k));
-    }
-    u.store(row.u + k);
-    v.store(row.v + k);
-    const Mask rest = !(speed2 > 0.0);
-    row.any_rest |= any(rest & lanes_between(0, n - k));
-    select(rest, Pack(1.0), 0.0).store(row.rest + k);
-    if constexpr (constant) {
-      (D * (1 / p.rho)).store(row.h + k);
-      Pack(p.rho).store(row.rho + k);
-      Pack(p.K).store(row.K + k);
-    } else {
-      D_safe.store(safe + k);
-      sqrt(speed2 * inverse_normal).store(speed + k);
-    }
-  }
-  if constexpr (!constant) measure<Law>(p, n, safe, speed, row);
-  for (int k = 0; k < n; k += Pack::lanes) {
-    const Pack h = select(Pack::load_unaligned(D_row + k) > dry, Pack::load(row.h + k), 0.0);
-    const Pack x = min(h * p.inverse_tip_depth, 1.0), alpha = p.alpha_varies ? Pack::load(row.alpha + k) : p.alpha;
-    const Pack extra = alpha - 1.0;
+  const auto settle = [&](int k, const Pack& h, const Pack& alpha) __attribute__((always_inline)) {  // what follows from thickness and shape factor
+    const Pack x = min(h * p.inverse_tip_depth, 1.0), extra = alpha - 1.0;
     h.store(row.h + k);
     (1.0 + extra * (x * x * (3.0 - 2.0 * x))).store(row.alpha + k);
     (extra * (6.0 * x * x * (1.0 - x))).store(row.slope + k);
     law.mu_start(h).store(row.hold + k);
+  };
+  alignas(64) Row safe, ratio;
+  row.any_rest = false;
+  for (int k = 0; k < n; k += Pack::lanes) {
+    const Pack D = Pack::load_unaligned(D_row + k), D_safe = max(D, least);
+    const Mask wet = D > dry;
+    const Pack inv = select(wet, 1.0 / D_safe, 0.0);
+    const Pack u = Pack::load_unaligned(Mx + k) * inv, v = Pack::load_unaligned(My + k) * inv;
+    Pack speed2 = u * u + v * v;
+    if constexpr (terrain) {
+      const Pack w = u * Pack::load(row.bx + k) + v * Pack::load(row.by + k);
+      speed2 = speed2 + w * w;
+    }
+    const Pack speed = ieee_sqrt(speed2);
+    u.store(row.u + k);
+    v.store(row.v + k);
+    speed.store(row.speed + k);
+    row.any_rest |= any(!(speed > 0.0) & lanes_between(0, n - k));
+    if constexpr (constant) {
+      settle(k, select(wet, D * (1 / p.rho), 0.0), p.alpha);
+      Pack(p.rho).store(row.rho + k);
+      Pack(p.K).store(row.K + k);
+    } else {
+      D_safe.store(safe + k);
+      if constexpr (terrain)
+        (speed * rsqrt(p.normal * Pack::load(row.c + k))).store(ratio + k);
+      else
+        (speed * p.inverse_root_normal).store(ratio + k);
+    }
+  }
+  if constexpr (!constant) {
+    measure<Law>(p, n, safe, ratio, row);
+    for (int k = 0; k < n; k += Pack::lanes)
+      settle(k, select(Pack::load_unaligned(D_row + k) > dry, Pack::load(row.h + k), 0.0),
+             p.alpha_varies ? Pack::load(row.alpha + k) : p.alpha);
   }
 }
 
@@ -105,24 +119,31 @@ void friction_stage(const PreparedClosure& p, const FrictionArgs& a) {
     const Mask cells = lanes_between(a.begin - k, a.end - k);
     Pack N = p.normal;
     if constexpr (terrain) N = max(0.0, p.normal * scratch(a.c) + scratch(a.bend));
-    const Pack h = scratch(a.h), hold = scratch(a.hold), s = norm(scratch(a.u), scratch(a.v));
+    const Pack h = scratch(a.h), hold = scratch(a.hold), s = scratch(a.speed);
     const Pack inv_root = rsqrt(max(N * h, 1e-300));
     const laws::MuAndSlopeOf<Pack> f = law.mu_and_slope(h, s * inv_root, hold);
     const Mask moving = s > 0.0;
     Pack mx = scratch(a.Msx), my = scratch(a.Msy), impulse = dt * N;
+    const Pack full = impulse * f.mu, steep = f.slope * inv_root;
     if constexpr (second) {
       const Pack share = field(a.share);
       mx = mx - share * field(a.Mx_old);
       my = my - share * field(a.My_old);
       impulse = select(share > 0.0, 0.5 * impulse, impulse);
-    } else {  // the part of the momentum that the explicit half of stage 2 will take
-      const Pack full = impulse * f.mu;
-      store_where(cells, select(full < s, 0.5 * (full / s), 0.0), a.share + k);
     }
-    const Pack D = scratch(a.D_new), m = norm(mx, my), steep = f.slope * inv_root;
+    constexpr double least = 1e-100;  // keeps the product of speed and momentum in range
+    const Pack D = scratch(a.D_new), m = norm(mx, my);
     const Pack resisting = select(moving, f.mu - steep * s, hold), stiff = select(moving, impulse * steep, 0.0);
-    const Pack left = max(0.0, m - D * impulse * resisting);
-    const Pack factor = select((D > dry) & (m > 0.0), left / (m * (1.0 + stiff)), 0.0);
+    const Pack left = max(0.0, m - D * impulse * resisting), stiff_m = max(m, least) * (1.0 + stiff);
+    Pack inverse;  // of stiff_m
+    if constexpr (second) {
+      inverse = 1.0 / stiff_m;
+    } else {  // the part of the momentum that the explicit half of stage 2 will take
+      const Pack safe = max(s, least), both = 1.0 / (safe * stiff_m);
+      inverse = both * safe;
+      store_where(cells, select(full < s, 0.5 * full * (both * stiff_m), 0.0), a.share + k);
+    }
+    const Pack factor = select((D > dry) & (m > 0.0), left * inverse, 0.0);
     store_where(cells, mx * factor, a.Mx + k);
     store_where(cells, my * factor, a.My + k);
     store_where(cells, D, a.D + k);

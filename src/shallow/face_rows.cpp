@@ -4,22 +4,30 @@
 // flat. Faces: hydrostatic reconstruction (Audusse et al. 2004) in the form of Chen & Noelle 2017, which also drives
 // thin layers on steep steps, where the flow is slow; where its head exceeds the step, the bed is continuous (a fast thin
 // layer would be blocked otherwise). Closures K, alpha, rho are averaged over the two cells, then HLL.
+#include <algorithm>
+
 #include "laws/flux/hll.hpp"
 #include "shallow/rows.hpp"
 
 namespace bagnold::shallow {
 namespace {
 
-// Half of van Leer's slope: the harmonic mean of the two differences, 0 at extrema. Never more than either
-// difference, so edges of h are not negative.
-[[gnu::always_inline]] inline Pack half_slope(const Pack& a, const Pack& b) {
-  const Pack product = a * b;
-  return select(product > 0.0, product / (a + b), 0.0);
-}
+// The two differences over a cell, and half of van Leer's slope: their harmonic mean, 0 at extrema. Never more than either
+// difference, so edges of h are not negative. Differences whose product is not above `least` count as none.
+struct Differences {
+  static constexpr double least = 1e-100;
+  Pack product, sum;
+  Mask monotone;
+  Differences(const Pack& a, const Pack& b) : product(a * b), sum(a + b), monotone(product > least) {
+    sum = select(monotone, sum, 1.0);
+  }
+  Pack half_slope(const Pack& inverse_sum) const { return select(monotone, product * inverse_sum, 0.0); }
+};
 
-[[gnu::always_inline]] inline Pack row_slope(const double* before, const double* here, const double* after, int k) {
+[[gnu::always_inline]] inline Differences differences(const double* before, const double* here, const double* after,
+                                                      int k) {
   const Pack c = Pack::load_unaligned(here + k);
-  return half_slope(c - Pack::load_unaligned(before + k), Pack::load_unaligned(after + k) - c);
+  return {c - Pack::load_unaligned(before + k), Pack::load_unaligned(after + k) - c};
 }
 
 // Slope of the bed: what the limited surface leaves after the limited depth. Differences are taken with the cell's own
@@ -39,7 +47,8 @@ template <Geometry G>
   }
   const Pack K = here(r.K), b = here(r.b);
   const Pack low = K * (push - push_b) + (b - before(rb.b)), high = K * (push_a - push) + (after(ra.b) - b);
-  return half_slope(low, high) - K * c * depth_slope;
+  const Differences surface(low, high);
+  return surface.half_slope(1.0 / surface.sum) - K * c * depth_slope;
 }
 
 }  // namespace
@@ -47,15 +56,21 @@ template <Geometry G>
 template <Geometry G>
 void slope_row(int end, bool second_order, const CellRow& before, const CellRow& here, const CellRow& after, int shift,
                SlopeRow& out) {
-  for (int k = 0; k < end; k += Pack::lanes) {
-    const Pack h = row_slope(before.h - shift, here.h, after.h + shift, k);
-    h.store_unaligned(out.h + k);
-    row_slope(before.u - shift, here.u, after.u + shift, k).store_unaligned(out.u + k);
-    row_slope(before.v - shift, here.v, after.v + shift, k).store_unaligned(out.v + k);
-    if constexpr (G != Geometry::flat) bed_slope<G>(before, here, after, k, shift, h).store_unaligned(out.b + k);
-    if (!second_order)
-      for (double* row : {out.h, out.u, out.v, out.b}) Pack(0.0).store_unaligned(row + k);
-  }
+  if (!second_order)
+    for (double* row : {out.h, out.u, out.v, out.b}) std::fill_n(row, row_size, 0.0);
+  else
+    for (int k = 0; k < end; k += Pack::lanes) {
+      const Differences h = differences(before.h - shift, here.h, after.h + shift, k),
+                        u = differences(before.u - shift, here.u, after.u + shift, k),
+                        v = differences(before.v - shift, here.v, after.v + shift, k);
+      // One division for all three. The sums are above 2 sqrt(least), so their product stays in range.
+      const Pack uv = u.sum * v.sum, inverse = 1.0 / (h.sum * uv), per_uv = inverse * h.sum;
+      const Pack h_slope = h.half_slope(inverse * uv);
+      h_slope.store(out.h + k);
+      u.half_slope(per_uv * v.sum).store(out.u + k);
+      v.half_slope(per_uv * u.sum).store(out.v + k);
+      if constexpr (G != Geometry::flat) bed_slope<G>(before, here, after, k, shift, h_slope).store(out.b + k);
+    }
 }
 
 // Rise of the surface K h + b across each face, less the fall of the chart. A dry cell takes from a higher neighbour
@@ -117,7 +132,7 @@ template <Geometry G>
 void face_row(const FaceArgs& a, FaceRow& out) {
   const CellRow &B = *a.before, &A = *a.after;
   const SlopeRow &SB = *a.slope_before, &SA = *a.slope_after;
-  const bool may_lock = B.any_rest && A.any_rest;
+  const bool may_lock = B.any_rest || A.any_rest;
   const double g = a.normal_g;
   for (int f = 0; f < a.end; f += Pack::lanes) {
     const auto b = [&](const Row& row) { return Pack::load_unaligned(row + f); };
@@ -160,22 +175,22 @@ void face_row(const FaceArgs& a, FaceRow& out) {
       right.h = h_r;
     }
     laws::ShallowFlux<Pack> flux = laws::hll(face, left, right);
-    (flux.normal + extra_left).store_unaligned(out.before + f);
-    (flux.normal + extra_right).store_unaligned(out.after + f);
-    flux.speed.store_unaligned(out.speed + f);
-    Pack locked = 0.0;
+    (flux.normal + extra_left).store(out.before + f);
+    if constexpr (G != Geometry::flat) (flux.normal + extra_right).store(out.after + f);
+    flux.speed.store(out.speed + f);
     if (may_lock) {
-      const Mask both_rest = b(B.rest) * c(A.rest) > 0.0;
+      const Mask both_rest = !(max(b(B.speed), c(A.speed)) > 0.0);
+      Pack locked = 0.0;
       if (any(both_rest)) {
         const Mask m = both_rest & locked_faces<G>(a, f, K, metric);
         flux.mass = select(m, 0.0, flux.mass);
         flux.tangential = select(m, 0.0, flux.tangential);
         locked = select(m, Pack(1.0), 0.0);
       }
+      locked.store(out.locked + f);
     }
-    flux.mass.store_unaligned(out.mass + f);
-    flux.tangential.store_unaligned(out.tangential + f);
-    locked.store_unaligned(out.locked + f);
+    flux.mass.store(out.mass + f);
+    flux.tangential.store(out.tangential + f);
   }
 }
 

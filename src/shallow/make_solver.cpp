@@ -83,6 +83,7 @@ Solver make_solver(Definition setup) {
   const Grid& g = s.setup.grid;
   s.closure = prepare(s.setup);
   s.kernels = choose_kernels(s.setup.closure, s.setup.terrain);
+  if (!s.setup.width.empty() && s.setup.bed.empty()) s.setup.bed.assign(static_cast<std::size_t>(g.padded()), 0.0);
   s.geometry = s.setup.terrain ? Geometry::terrain : s.setup.bed.empty() ? Geometry::flat : Geometry::bed;
   list_ghosts(s);
   if (!s.setup.bed.empty()) {

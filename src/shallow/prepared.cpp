@@ -53,6 +53,7 @@ PreparedClosure prepare(const Definition& setup) {
       [&](const auto& law) -> AnyFriction { return laws::BasalFriction(law.prepared(p.g), p.set.static_branch); },
       p.set.friction);
   p.normal = setup.gravity.normal;
+  p.inverse_root_normal = 1 / std::sqrt(p.normal);
   const closure::Validity& v = p.set.validity;
   const double lo = std::tan(v.theta_lo_deg * std::numbers::pi / 180),
                hi = std::tan(v.theta_hi_deg * std::numbers::pi / 180);
@@ -71,6 +72,7 @@ PreparedClosure prepare(const Definition& setup) {
   }
   p.rho = density(lo);
   p.K = ratio(lo);
+  p.typical_rho = density(p.set.is_constant() ? lo : 0.5 * (lo + hi));
   if (const auto* strain = std::get_if<laws::StrainModelShapeFactor>(&p.set.shape_factor)) {
     p.alpha_varies = true;
     p.strain = *strain;

@@ -39,9 +39,11 @@ struct PreparedClosure {
   closure::ClosureSet set;
   AnyFriction friction = laws::BasalFriction(laws::Coulomb{}.prepared(1), laws::StaticBranch{});
   double g = 1, normal = 1;      // full and normal gravity
+  double inverse_root_normal = 1;
   double dry_density_depth = 0;  // D below which a cell is dry
   double inverse_tip_depth = 1e300;
-  double rho = 1, K = 1, alpha = 1;  // constant closures; else representative values
+  double rho = 1, K = 1, alpha = 1;  // constant closures; else those at the smallest angle
+  double typical_rho = 1;            // in the middle of the range
   Polynomial rho_of_mu, K_of_mu;     // functions of mu within the validity range
   double mu_lo = 0, mu_hi = 1e300;   // its ends
   bool alpha_varies = false;

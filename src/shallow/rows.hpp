@@ -15,15 +15,14 @@ using Row = double[row_size];
 // What the faces need to know of the cells of one row. Entry k is cell i0 - halo + k.
 struct CellRow {
   alignas(64) double lead[Pack::lanes];  // kernels read one entry before a row
-  alignas(64) Row h, u, v;               // thickness, velocity; zero in dry cells
+  alignas(64) Row h, u, v, speed;        // thickness, velocity and its size; zero in dry cells
   alignas(64) Row rho, K, alpha, slope;  // closures; slope = h d(alpha)/dh of the tip
   alignas(64) Row hold;                  // mu_start(h): largest friction at rest
-  alignas(64) Row rest;                  // 1: not moving (dry cells included), else 0
   alignas(64) Row drop;                  // rise of the surface to the next cell of the row, see drop_row()
   alignas(64) Row gx, gy;                // slope of the surface: of K h + b less the fall of the chart
   alignas(64) Row b;                     // bed
   alignas(64) Row c, bx, by;             // terrain only: cosine of the slope, gradient of the bed
-  bool any_rest;                         // drop, gx, gy are there only if something rests, or on terrain
+  bool any_rest;                         // of cells, dry ones included; drop, gx, gy are there only if something rests, or on terrain
 };
 
 // Half the limited difference over each cell in one direction: a value at an edge is that of the cell -+ this.
@@ -33,8 +32,10 @@ struct SlopeRow {
 
 // Fluxes through the faces of one row; entry f lies between cell (or row) f and the next one.
 struct FaceRow {
-  alignas(64) Row mass, before, after, tangential;  // momentum flux as the cell before and after the face see it
-  alignas(64) Row speed, locked, drop;
+  alignas(64) Row mass, tangential;
+  alignas(64) Row before, after;  // momentum as the cell before and after the face see it; without bed only `before`
+  alignas(64) Row speed, drop;
+  alignas(64) Row locked;  // only if a cell beside the row rests
 };
 
 enum class Geometry { flat, bed, terrain };
@@ -47,7 +48,7 @@ using ClosureKernel = void (*)(const PreparedClosure&, int n, const double* D, c
 struct FrictionArgs {
   int begin, end, stage;  // entries; all rows start at entry 0
   double dt;
-  const double *h, *u, *v, *hold;    // the state the stage began with
+  const double *h, *speed, *hold;    // the state the stage began with
   const double *c, *bx, *by, *bend;  // terrain: geometry and curvature acceleration
   const double *D_new, *Msx, *Msy;   // after fluxes and gravity
   const double *Mx_old, *My_old;     // start of the step

@@ -56,8 +56,8 @@ class Sweep {
   }
 
  private:
-  CellRow& cell(int j) { return w_.cells[j & 3]; }
-  FaceRow& below(int j) { return w_.y_faces[j & 1]; }  // faces between rows j - 1 and j
+  CellRow& cell(int j) const { return w_.cells[j & 3]; }
+  FaceRow& below(int j) const { return w_.y_faces[j & 1]; }  // faces between rows j - 1 and j
 
   void run_rows() {
     for (int r = t_.j0 - halo; r < t_.j0 + t_.ny + halo; ++r) {
@@ -174,6 +174,16 @@ class Sweep {
     }
   }
 
+  // Area factors of a pack of cells: width of a channel, or area of sloping ground per horizontal area; inverse metric.
+  struct Areas {
+    Pack east = 1.0, west = 1.0, north = 1.0, south = 1.0, inverse = 1.0, metric_x = 1.0, metric_y = 1.0, c = 1.0;
+  };
+  [[gnu::always_inline]] inline Areas areas(int j, int k) const;
+  // Rates of change of mass and momentum by fluxes and gravity; wave: rate at which waves cross the cell.
+  struct Rates {
+    Pack D, x, y, wave;
+  };
+  [[gnu::always_inline]] inline Rates rates(int j, int k) const;
   // Mass and momentum after fluxes and gravity, before friction.
   void balance(int j);
   void apply_friction(int j);
@@ -188,85 +198,101 @@ class Sweep {
   int n_;
   const Conserved &start_, &from_;
   const bool second_order_ = s_.setup.scheme.second_order;
+  const double inv_dx_ = 1 / g_.dx, inv_dy_ = g_.two_d() ? 1 / g_.dy : 0;
+  const double fall_x_ = s_.closure.normal * s_.setup.gravity.slope_x,  // acceleration along the chart
+      fall_y_ = g_.two_d() ? s_.closure.normal * s_.setup.gravity.slope_y : 0;
   StageResult result_;
   Pack rate_ = 0.0, wet_ = 0.0;
 };
 
 template <Geometry G>
-void Sweep<G>::balance(int j) {
+typename Sweep<G>::Areas Sweep<G>::areas(int j, int k) const {
+  Areas a;
+  const auto column = static_cast<std::size_t>(t_.i0);
+  if constexpr (G == Geometry::bed) {
+    a.east = Pack::load_unaligned(&s_.width_face[column] + k);
+    a.west = Pack::load_unaligned(&s_.width_face[column] + k - 1);
+    a.inverse = Pack::load_unaligned(&s_.inverse_width[column] + k);
+  }
+  if constexpr (G == Geometry::terrain) {
+    const CellRow& row = cell(j);
+    const double* J = &s_.area[g_.at(t_.i0 - halo, j)] + k;
+    const auto face = [&](std::ptrdiff_t step) { return 0.5 * (Pack::load_unaligned(J) + Pack::load_unaligned(J + step)); };
+    a.east = face(1);
+    a.west = face(-1);
+    a.north = face(g_.stride());
+    a.south = face(-g_.stride());
+    a.c = a.inverse = Pack::load(row.c + k);
+    a.metric_x = 1.0 - Pack::load(row.bx + k) * Pack::load(row.bx + k) * (a.c * a.c);
+    a.metric_y = 1.0 - Pack::load(row.by + k) * Pack::load(row.by + k) * (a.c * a.c);
+  }
+  return a;
+}
+
+template <Geometry G>
+typename Sweep<G>::Rates Sweep<G>::rates(int j, int k) const {
   const CellRow& row = cell(j);
   const FaceRow &X = w_.x_faces, &S = below(j), &N = below(j + 1);
-  const SlopeRow &ex = w_.x_slopes, &ey = w_.y_slopes[j & 1];
-  const bool second = number_ == 2, two_d = g_.two_d(), channel = !s_.setup.width.empty();
-  const double inv_dx = 1 / g_.dx, inv_dy = two_d ? 1 / g_.dy : 0, dt = dt_, g = s_.closure.normal;
-  const double push_x = g * s_.setup.gravity.slope_x, push_y = two_d ? g * s_.setup.gravity.slope_y : 0;
-  const double dry = s_.closure.dry_density_depth, huge = std::numeric_limits<double>::max();
-  const double *W = &s_.width_face[static_cast<std::size_t>(t_.i0)],
-               *inv_W = &s_.inverse_width[static_cast<std::size_t>(t_.i0)];
+  const auto at = [&](const double* r) { return Pack::load_unaligned(r + k); };
+  const Areas A = areas(j, k);
+  constexpr bool flat = G == Geometry::flat;
+  const auto &x_after = flat ? X.before : X.after, &y_after = flat ? S.before : S.after;
+  const double g = s_.closure.normal;
+  const Pack D = at(row.rho) * at(row.h), ax = A.inverse * inv_dx_, ay = A.inverse * inv_dy_;
+  Rates r;
+  r.D = ax * (A.west * at(X.mass - 1) - A.east * at(X.mass)) + ay * (A.south * at(S.mass) - A.north * at(N.mass));
+  Pack push_x = A.west * at(x_after - 1) - A.east * at(X.before), push_y = A.south * at(y_after) - A.north * at(N.before);
+  if constexpr (!flat) {
+    const Pack half_P = 0.5 * g * at(row.K) * D * at(row.h) * A.c;
+    push_x = push_x + half_P * A.metric_x * (A.east - A.west);
+    push_y = push_y + half_P * A.metric_y * (A.north - A.south);
+  }
+  r.x = ax * push_x + ay * (A.south * at(S.tangential) - A.north * at(N.tangential)) + D * fall_x_;
+  r.y = ay * push_y + ax * (A.west * at(X.tangential - 1) - A.east * at(X.tangential)) + D * fall_y_;
+  if constexpr (!flat) {
+    r.x = r.x - 2 * inv_dx_ * g * A.metric_x * D * at(w_.x_slopes.b);
+    r.y = r.y - 2 * inv_dy_ * g * A.metric_y * D * at(w_.y_slopes[j & 1].b);
+  }
+  if constexpr (G == Geometry::terrain) {
+    const Pack cross = g * D * at(row.bx) * at(row.by) * (A.c * A.c), turn = D * at(w_.bend) * A.c;
+    r.x = r.x + (cross * at(row.gy) - turn * at(row.bx));
+    r.y = r.y + (cross * at(row.gx) - turn * at(row.by));
+  }
+  if (row.any_rest) {
+    const Mask still = at(X.locked) * at(X.locked - 1) * at(N.locked) * at(S.locked) > 0.0;
+    r.x = select(still, 0.0, r.x);
+    r.y = select(still, 0.0, r.y);
+  }
+  r.wave = ax * max(A.east * at(X.speed), A.west * at(X.speed - 1)) +
+           ay * max(A.north * at(N.speed), A.south * at(S.speed));
+  return r;
+}
+
+template <Geometry G>
+void Sweep<G>::balance(int j) {
+  const double dt = dt_, dry = s_.closure.dry_density_depth, huge = std::numeric_limits<double>::max();
   const std::size_t start = g_.at(t_.i0 - halo, j);
-  const std::ptrdiff_t up = g_.stride();
   double *Lx = &s_.next.Mx[start], *Ly = &s_.next.My[start];
   for (int k = 0; k < halo + t_.nx; k += Pack::lanes) {
-    const auto at = [&](const double* r) { return Pack::load_unaligned(r + k); };
     const auto in = [&](const std::vector<double>& field) { return Pack::load_unaligned(&field[start] + k); };
     const Mask cells = lanes_between(halo - k, halo + t_.nx - k);
-    // area factors: width of a channel, or area of sloping ground per horizontal area
-    Pack We = 1.0, Ww = 1.0, Wn = 1.0, Ws = 1.0, inv_A = 1.0, metric_x = 1.0, metric_y = 1.0, c = 1.0;
-    if (channel) {
-      We = at(W);
-      Ww = at(W - 1);
-      inv_A = at(inv_W);
-    }
-    if constexpr (G == Geometry::terrain) {
-      const Pack J = in(s_.area);
-      We = 0.5 * (J + Pack::load_unaligned(&s_.area[start] + k + 1));
-      Ww = 0.5 * (Pack::load_unaligned(&s_.area[start] + k - 1) + J);
-      Wn = 0.5 * (J + Pack::load_unaligned(&s_.area[start] + k + up));
-      Ws = 0.5 * (Pack::load_unaligned(&s_.area[start] + k - up) + J);
-      c = inv_A = at(row.c);
-      metric_x = 1.0 - at(row.bx) * at(row.bx) * (c * c);
-      metric_y = 1.0 - at(row.by) * at(row.by) * (c * c);
-    }
-    const Pack rho = at(row.rho), h = at(row.h), D = rho * h, half_P = 0.5 * g * at(row.K) * D * h * c;
-    const Pack ax = inv_A * inv_dx, ay = inv_A * inv_dy;
-    const Pack rD = ax * (Ww * at(X.mass - 1) - We * at(X.mass)) + ay * (Ws * at(S.mass) - Wn * at(N.mass));
-    Pack rx = ax * ((Ww * at(X.after - 1) - We * at(X.before)) + half_P * metric_x * (We - Ww)) +
-              ay * (Ws * at(S.tangential) - Wn * at(N.tangential));
-    Pack ry = ay * ((Ws * at(S.after) - Wn * at(N.before)) + half_P * metric_y * (Wn - Ws)) +
-              ax * (Ww * at(X.tangential - 1) - We * at(X.tangential));
-    if constexpr (G != Geometry::flat) {
-      rx = rx - 2 * inv_dx * g * metric_x * D * at(ex.b);
-      ry = ry - 2 * inv_dy * g * metric_y * D * at(ey.b);
-    }
-    if constexpr (G == Geometry::terrain) {
-      const Pack cross = g * D * at(row.bx) * at(row.by) * (c * c), turn = D * at(w_.bend) * c;
-      rx = rx + (cross * at(row.gy) - turn * at(row.bx));
-      ry = ry + (cross * at(row.gx) - turn * at(row.by));
-    }
-    rx = rx + D * push_x;
-    ry = ry + D * push_y;
-    if (row.any_rest) {
-      const Mask still = at(X.locked) * at(X.locked - 1) * at(N.locked) * at(S.locked) > 0.0;
-      rx = select(still, 0.0, rx);
-      ry = select(still, 0.0, ry);
-    }
-    Pack D_new = in(from_.D) + dt * rD, mx = in(start_.Mx), my = in(start_.My);
-    if (second) {
+    const Rates r = rates(j, k);
+    Pack D_new = in(from_.D) + dt * r.D, mx = in(start_.Mx), my = in(start_.My);
+    if (number_ == 2) {
       D_new = 0.5 * (in(start_.D) + D_new);
-      mx = mx + 0.5 * dt * (at(Lx) + rx);
-      my = my + 0.5 * dt * (at(Ly) + ry);
+      mx = mx + 0.5 * dt * (Pack::load_unaligned(Lx + k) + r.x);
+      my = my + 0.5 * dt * (Pack::load_unaligned(Ly + k) + r.y);
     } else {
-      mx = mx + dt * rx;
-      my = my + dt * ry;
-      store_where(cells, rx, Lx + k);
-      store_where(cells, ry, Ly + k);
+      mx = mx + dt * r.x;
+      my = my + dt * r.y;
+      store_where(cells, r.x, Lx + k);
+      store_where(cells, r.y, Ly + k);
     }
     D_new.store(w_.D_new + k);
     mx.store(w_.Msx + k);
     my.store(w_.Msy + k);
-    const Pack rate = ax * max(We * at(X.speed), Ww * at(X.speed - 1)) + ay * max(Wn * at(N.speed), Ws * at(S.speed));
     const Mask fine = !(D_new < 0.0) & (D_new + (abs(mx) + abs(my)) < huge);
-    rate_ = max(rate_, select(cells, rate, 0.0));
+    rate_ = max(rate_, select(cells, r.wave, 0.0));
     wet_ = wet_ + select(cells & (D_new > dry), Pack(1.0), 0.0);
     if (const std::uint32_t wrong = to_integer(cells & !fine); wrong != 0)
       result_.bad = static_cast<std::int64_t>(start) + k + std::countr_zero(wrong);
@@ -283,8 +309,7 @@ void Sweep<G>::apply_friction(int j) {
                           .stage = number_,
                           .dt = dt_,
                           .h = row.h,
-                          .u = row.u,
-                          .v = row.v,
+                          .speed = row.speed,
                           .hold = row.hold,
                           .c = row.c,
                           .bx = row.bx,
