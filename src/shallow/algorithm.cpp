@@ -34,22 +34,16 @@ void book_crossings(const Solver& s, State& state, double dt) {
 
 void advance_one_step(Solver& s, State& state) {
   const Scheme& scheme = s.setup.scheme;
+  const auto step_for = [&](double rate) { return rate > 0 ? std::min(scheme.cfl / rate, scheme.max_step) : scheme.max_step; };
   double dt = state.next_step;
   fill_ghosts(s, state.now, state.time);
-  if (!(dt > 0)) {
-    const double rate = stage(s, state, 1, 0).rate;
-    dt = rate > 0 ? std::min(scheme.cfl / rate, scheme.max_step) : scheme.max_step;
-  }
-  StageResult first, second;
+  if (!(dt > 0)) dt = step_for(both_stages(s, state, 0)[0].rate);
+  StepResult done;
   for (int attempt = 0;; ++attempt) {
-    first = stage(s, state, 1, dt);
-    StageResult* worst = &first;
-    if (first.bad < 0 && dt * first.rate <= positivity_limit) {
-      fill_ghosts(s, s.predicted, state.time + dt);
-      second = stage(s, state, 2, dt);
-      if (second.bad < 0 && dt * second.rate <= positivity_limit) break;
-      worst = &second;
-    }
+    done = both_stages(s, state, dt);
+    const auto failed = [&](const StageResult& r) { return r.bad >= 0 || !(dt * r.rate <= positivity_limit); };
+    const StageResult* worst = std::find_if(done.begin(), done.end(), failed);
+    if (worst == done.end()) break;
     if (attempt == most_attempts) give_up(s, state, *worst, dt);
     dt = worst->bad < 0 && std::isfinite(worst->rate) ? std::min(scheme.cfl / worst->rate, 0.9 * dt) : 0.5 * dt;
   }
@@ -57,9 +51,9 @@ void advance_one_step(Solver& s, State& state) {
   book_crossings(s, state, dt);
   state.time += dt;
   ++state.step;
-  state.cell_updates += static_cast<double>(second.wet);
+  state.cell_updates += static_cast<double>(done[1].wet);
   state.smallest_step = state.step == 1 ? dt : std::min(state.smallest_step, dt);
-  state.next_step = second.rate > 0 ? std::min(scheme.cfl / second.rate, scheme.max_step) : scheme.max_step;
+  state.next_step = step_for(done[1].rate);
   find_active_tiles(s, state);
 }
 

@@ -1,4 +1,4 @@
-// Ghost cells: two beyond each side, filled before each stage.
+// Ghost cells beyond each side, filled before each stage.
 #include <algorithm>
 
 #include "shallow/solver.hpp"
@@ -13,86 +13,96 @@ double interpolate(const std::vector<double>& t, const std::vector<double>& y, d
   return y[k - 1] + (y[k] - y[k - 1]) * ((at - t[k - 1]) / (t[k] - t[k - 1]));
 }
 
-// normal_x: the side is left or right; sign: direction into the domain along the normal.
-void fill_side(const Solver& s, const Boundary& boundary, bool normal_x, double sign, double time,
-               const std::vector<Ghost>& ghosts, Conserved& u) {
-  double h = 0, speed = 0;
-  if (boundary.kind == BoundaryKind::inflow) {
-    h = interpolate(boundary.inflow.t, boundary.inflow.h, time);
-    speed = interpolate(boundary.inflow.t, boundary.inflow.u, time) * sign;
+// Where the cells along a side are: `depth` counts from the side inwards, -1 being the first ghost.
+struct Along {
+  bool normal_x, low;  // left or right; left or bottom
+  int n;               // cells from this side to the other
+  template <class Array>
+  std::size_t at(const Array& u, int depth, int t) const {
+    const int p = low ? depth : n - 1 - depth;
+    return normal_x ? u.at(p, t) : u.at(t, p);
   }
-  const double D = h > 0 ? closure_at(s.closure, h, std::abs(speed)).rho * h : 0;
-  for (const Ghost& g : ghosts) switch (boundary.kind) {
-      case BoundaryKind::wall:
-        u.D[g.to] = u.D[g.mirror];
-        u.Mx[g.to] = normal_x ? -u.Mx[g.mirror] : u.Mx[g.mirror];
-        u.My[g.to] = normal_x ? u.My[g.mirror] : -u.My[g.mirror];
-        break;
-      case BoundaryKind::outflow: {
-        u.D[g.to] = u.D[g.edge];
-        const double m = normal_x ? u.Mx[g.edge] : u.My[g.edge], out = sign > 0 ? std::min(m, 0.0) : std::max(m, 0.0);
-        u.Mx[g.to] = normal_x ? out : u.Mx[g.edge];  // nothing comes in
-        u.My[g.to] = normal_x ? u.My[g.edge] : out;
-        break;
-      }
-      case BoundaryKind::periodic:
-        u.D[g.to] = u.D[g.across];
-        u.Mx[g.to] = u.Mx[g.across];
-        u.My[g.to] = u.My[g.across];
-        break;
-      case BoundaryKind::inflow:
-        u.D[g.to] = D;
-        u.Mx[g.to] = normal_x ? D * speed : 0;
-        u.My[g.to] = normal_x ? 0 : D * speed;
-        break;
-    }
+  int across(int k) const { return n - 1 - k % n; }  // depth of what a periodic ghost is an image of
+};
+
+Along along(const Grid& g, Side side) {
+  const bool normal_x = side == Side::left || side == Side::right;
+  return {normal_x, side == Side::left || side == Side::bottom, normal_x ? g.nx : g.ny};
 }
 
 }  // namespace
 
-void list_ghosts(Solver& s) {
-  const Grid& g = s.setup.grid;
-  auto& [left, right, bottom, top] = s.ghosts;
-  for (int j = 0; j < g.ny; ++j)
-    for (int k = 0; k < halo; ++k) {
-      const int near = std::min(k, g.nx - 1), far = std::max(g.nx - 1 - k, 0);
-      left.push_back({g.at(-1 - k, j), g.at(near, j), g.at(0, j), g.at(far, j)});
-      right.push_back({g.at(g.nx + k, j), g.at(far, j), g.at(g.nx - 1, j), g.at(near, j)});
+void fill_side(const Solver& s, Side side, double time, int lo, int hi, int depth, const Window& u) {
+  const Boundary& boundary = s.setup.boundary[static_cast<std::size_t>(side)];
+  const Along cells = along(s.setup.grid, side);
+  double *normal = cells.normal_x ? u.Mx : u.My, *tangential = cells.normal_x ? u.My : u.Mx;
+  const auto each = [&](auto&& source_depth, auto&& fill) {
+    for (int k = 0; k < depth; ++k)
+      for (int t = lo; t < hi; ++t) fill(cells.at(u, -1 - k, t), cells.at(u, source_depth(k), t));
+  };
+  switch (boundary.kind) {
+    case BoundaryKind::wall:
+      return each([&](int k) { return std::min(k, cells.n - 1); },
+                  [&](std::size_t to, std::size_t from) {
+                    u.D[to] = u.D[from];
+                    normal[to] = -normal[from];
+                    tangential[to] = tangential[from];
+                  });
+    case BoundaryKind::outflow:
+      return each([](int) { return 0; },
+                  [&](std::size_t to, std::size_t from) {
+                    u.D[to] = u.D[from];  // nothing comes in
+                    normal[to] = cells.low ? std::min(normal[from], 0.0) : std::max(normal[from], 0.0);
+                    tangential[to] = tangential[from];
+                  });
+    case BoundaryKind::periodic:
+      return each([&](int k) { return cells.across(k); },
+                  [&](std::size_t to, std::size_t from) {
+                    u.D[to] = u.D[from];
+                    u.Mx[to] = u.Mx[from];
+                    u.My[to] = u.My[from];
+                  });
+    case BoundaryKind::inflow: {
+      const Hydrograph& q = boundary.inflow;
+      const double h = interpolate(q.t, q.h, time), inwards = interpolate(q.t, q.u, time);
+      const double D = h > 0 ? closure_at(s.closure, h, std::abs(inwards)).rho * h : 0;
+      return each([](int) { return 0; },
+                  [&](std::size_t to, std::size_t) {
+                    u.D[to] = D;
+                    normal[to] = D * (cells.low ? inwards : -inwards);
+                    tangential[to] = 0;
+                  });
     }
-  if (!g.two_d()) return;
-  for (int i = -halo; i < g.nx + halo; ++i)  // corners too, from the ghosts of the left and right
-    for (int k = 0; k < halo; ++k) {
-      bottom.push_back({g.at(i, -1 - k), g.at(i, k), g.at(i, 0), g.at(i, g.ny - 1 - k)});
-      top.push_back({g.at(i, g.ny + k), g.at(i, g.ny - 1 - k), g.at(i, g.ny - 1), g.at(i, k)});
-    }
+  }
 }
 
-void fill_ghosts(const Solver& s, Conserved& u, double time) {
-  const auto& boundary = s.setup.boundary;
-  fill_side(s, boundary[0], true, 1, time, s.ghosts[0], u);
-  fill_side(s, boundary[1], true, -1, time, s.ghosts[1], u);
-  fill_side(s, boundary[2], false, 1, time, s.ghosts[2], u);
-  fill_side(s, boundary[3], false, -1, time, s.ghosts[3], u);
+void fill_ghosts(const Solver& s, Conserved& now, double time) {
+  const Grid& g = s.setup.grid;
+  const Window u = window(g, now);
+  fill_side(s, Side::left, time, 0, g.ny, halo, u);
+  fill_side(s, Side::right, time, 0, g.ny, halo, u);
+  if (!g.two_d()) return;  // corners too, from the ghosts of the left and right
+  fill_side(s, Side::bottom, time, -halo, g.nx + halo, halo, u);
+  fill_side(s, Side::top, time, -halo, g.nx + halo, halo, u);
 }
 
 void fill_bed_ghosts(const Solver& s, std::vector<double>& bed) {
-  constexpr std::array<double, 2> beyond = {1, 2};
-  for (std::size_t side = 0; side < 4; ++side) {
-    const BoundaryKind kind = s.setup.boundary[side].kind;
-    for (std::size_t k = 0; k < s.ghosts[side].size(); ++k) {
-      const Ghost& g = s.ghosts[side][k];
-      const auto inward = static_cast<std::ptrdiff_t>(g.edge) - (k % 2 == 0 ? static_cast<std::ptrdiff_t>(g.to) : 0);
-      if (kind == BoundaryKind::wall)
-        bed[g.to] = bed[g.mirror];
-      else if (kind == BoundaryKind::periodic)
-        bed[g.to] = bed[g.across];
-      else if (k % 2 == 0) {  // open sides: the slope goes on
-        const double edge = bed[g.edge],
-                     next = bed[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(g.edge) + inward)];
-        bed[g.to] = edge - (next - edge) * beyond[0];
-        bed[s.ghosts[side][k + 1].to] = edge - (next - edge) * beyond[1];
+  const Grid& g = s.setup.grid;
+  for (const Side side : {Side::left, Side::right, Side::bottom, Side::top}) {
+    const BoundaryKind kind = s.setup.boundary[static_cast<std::size_t>(side)].kind;
+    const Along cells = along(g, side);
+    if (!cells.normal_x && !g.two_d()) break;
+    const int lo = cells.normal_x ? 0 : -halo, hi = cells.normal_x ? g.ny : g.nx + halo;
+    for (int t = lo; t < hi; ++t)
+      for (int k = 0; k < halo; ++k) {
+        const auto at = [&](int depth) -> double& { return bed[cells.at(g, depth, t)]; };
+        if (kind == BoundaryKind::wall)
+          at(-1 - k) = at(std::min(k, cells.n - 1));
+        else if (kind == BoundaryKind::periodic)
+          at(-1 - k) = at(cells.across(k));
+        else  // open sides: the slope goes on
+          at(-1 - k) = at(0) - (at(1) - at(0)) * (k + 1);
       }
-    }
   }
 }
 

@@ -8,8 +8,9 @@
 
 namespace bagnold::shallow {
 
-constexpr int halo = 2;   // ghost cells on every side; MUSCL needs two
-constexpr int slack = 8;  // entries after the last cell: kernels read eight at a time
+constexpr int reach = 2;         // cells a stage looks at on every side: MUSCL needs two
+constexpr int halo = 2 * reach;  // ghost cells on every side: a step is two stages
+constexpr int slack = 8;         // entries after the last cell: kernels read eight at a time
 
 // Cells of dx by dy; the first cell's lower left corner is (x0, y0). ny = 1 is the one-dimensional model. Arrays over
 // the grid are padded by the halo, row by row, and by the slack at their end.

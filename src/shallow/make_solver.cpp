@@ -85,7 +85,6 @@ Solver make_solver(Definition setup) {
   s.kernels = choose_kernels(s.setup.closure, s.setup.terrain);
   if (!s.setup.width.empty() && s.setup.bed.empty()) s.setup.bed.assign(static_cast<std::size_t>(g.padded()), 0.0);
   s.geometry = s.setup.terrain ? Geometry::terrain : s.setup.bed.empty() ? Geometry::flat : Geometry::bed;
-  list_ghosts(s);
   if (!s.setup.bed.empty()) {
     s.bed = s.setup.bed;
     fill_bed_ghosts(s, s.bed);
@@ -94,8 +93,7 @@ Solver make_solver(Definition setup) {
   if (s.setup.terrain) differentiate_bed(s);
 
   const auto columns = static_cast<std::size_t>(g.stride());
-  s.width_face.assign(columns + row_size,
-                      1.0);  // face f of a tile at i0 is entry i0 + f; faces halo - 1 .. nx + 1 are real
+  s.width_face.assign(columns + row_size, 1.0);  // entry i + halo is the face after cell i
   s.inverse_width.assign(columns + row_size, 1.0);
   if (!s.setup.width.empty()) {
     const auto& w = s.setup.width;

@@ -9,10 +9,11 @@
 namespace bagnold::shallow {
 
 constexpr int max_tile = 124;
-constexpr int row_size = max_tile + 2 * halo + 2 * Pack::lanes;
+constexpr int row_size = max_tile + 4 * reach + 2 * Pack::lanes;  // stage 1 computes what stage 2 looks at
 using Row = double[row_size];
 
-// What the faces need to know of the cells of one row. Entry k is cell i0 - halo + k.
+// What the faces need to know of the cells of one row. Entry k is cell i0 - reach + k of
+// a stage over the cells from i0 on.
 struct CellRow {
   alignas(64) double lead[Pack::lanes];  // kernels read one entry before a row
   alignas(64) Row h, u, v, speed;        // thickness, velocity and its size; zero in dry cells

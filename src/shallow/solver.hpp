@@ -1,6 +1,6 @@
 // The shallow-layer solver: Weinhart et al. 2012, eq. 34, by a second-order finite-volume method.
 #pragma once
-#include <memory>
+#include <array>
 #include <vector>
 
 #include "shallow/rows.hpp"
@@ -8,21 +8,18 @@
 
 namespace bagnold::shallow {
 
+// What is learnt from a stage.
 struct StageResult {
   double rate = 0;        // largest sum over directions of |speed|/d, 1/time: dt rate <= 1/2 keeps D >= 0
   std::int64_t bad = -1;  // padded index of a column that became negative or not a number, else -1
   std::int64_t wet = 0;   // cells
 };
+using StepResult = std::array<StageResult, 2>;
 
 // A box of cells.
 struct Tile {
   int i0 = 0, j0 = 0, nx = 0, ny = 0;
   bool empty() const { return nx <= 0 || ny <= 0; }
-};
-
-// Where a ghost cell takes its value from: its mirror image, the edge cell of its row, or the cell across the domain.
-struct Ghost {
-  std::size_t to, mirror, edge, across;
 };
 
 // Everything derived from the set-up that a step needs. Built once; nothing here changes the result of a step but the
@@ -36,14 +33,13 @@ struct Solver {
   std::vector<double> width_face, inverse_width;  // by column, with halo; 1 unless a channel
   std::vector<double> fall_x;                     // fall of the chart over each x face, 0 at walls
   double fall_y = 0;
-  Conserved predicted, next;                 // stage 1; result (before: fluxes of stage 1)
-  std::array<std::vector<Ghost>, 4> ghosts;  // by Side
+  Conserved next;  // result of a step
   int tiles_x = 1, tiles_y = 1;
   std::vector<Tile> boxes;             // of each tile, the cells that are wet or can get wet in one step
   std::vector<int> active;             // tiles whose box is not empty
   std::vector<double> crossing[2][4];  // boundary mass flux of each stage
-  std::vector<StageResult> tile_results;
-  std::vector<Tile> wet_boxes, grown_boxes;  // scratch of find_active_tiles()
+  std::vector<StepResult> tile_results;
+  std::vector<Tile> wet_boxes, grown_boxes;  // of each tile: around its wet cells after the step; scratch
 };
 
 // Throws UnphysicalError for a set-up that means nothing (sizes, gravity, CFL, periodic sides that do not pair, ...).
@@ -74,10 +70,14 @@ double mass_crossed(const Solver& solver, const State& state);  // that left thr
 bool at_rest(const Solver& solver, const State& state);         // every cell exactly at rest
 
 // ---- used by advance_one_step ------------------------------------------------------------------------------------
-StageResult stage(Solver& solver, const State& state, int number, double dt);
-void fill_ghosts(const Solver& solver, Conserved& u, double time);
-void list_ghosts(Solver& solver);
+// Both stages from state.now to next. Ghosts of state.now must be filled.
+StepResult both_stages(Solver& solver, const State& state, double dt);
+void fill_ghosts(const Solver& solver, Conserved& now, double time);
+// `depth` ghosts beyond one side, along the cells lo ... hi - 1.
+void fill_side(const Solver& solver, Side side, double time, int lo, int hi, int depth, const Window& u);
 void fill_bed_ghosts(const Solver& solver, std::vector<double>& bed);
-void find_active_tiles(Solver& solver, const State& state);
+// The box around the wet cells within `box`.
+Tile wet_box(const Solver& solver, const Conserved& u, const Tile& box);
+void find_active_tiles(Solver& solver, const State& state);  // from wet_boxes
 
 }  // namespace bagnold::shallow

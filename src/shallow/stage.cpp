@@ -1,6 +1,7 @@
-// One Runge-Kutta stage over the active tiles. A tile is swept row by row with a few rows of scratch: cells of row r are
-// closed, then the faces below and the row r - 2 are finished. Every cell is computed from the same numbers in the
-// same order whatever the tiles and threads, so neither shows in the result.
+// Both Runge-Kutta stages, tile by tile. Stage 1 covers what stage 2 looks at, so that a tile needs nothing of its
+// neighbours but the state before the step, and what lies between the stages never leaves the cache. A stage is a sweep row by row
+// with a few rows of scratch: cells of row r are closed, then the faces below and the row r - 2 are finished. Every cell
+// is computed from the same numbers in the same order whatever the tiles and threads, so neither shows in the result.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -16,6 +17,17 @@ struct Scratch {
   SlopeRow x_slopes, y_slopes[2];
   FaceRow x_faces, y_faces[2];
   alignas(64) Row D_new, Msx, Msy, bend, fall;
+  Conserved predicted;  // by stage 1, over a tile
+  Conserved kept;       // of stage 1 for stage 2: D: share of the old momentum that friction takes; M: rates of change
+};
+
+// What a stage works on.
+struct Stage {
+  int number;
+  double dt;
+  Tile cells, own;          // to be computed; among them those of the tile
+  ConstWindow start, from;  // the step began with; the stage begins with
+  Window to, kept;
 };
 
 // Grids smaller than this are computed by one thread: starting the others would cost more.
@@ -34,16 +46,8 @@ void still_rows(Scratch& w) {
 template <Geometry G>
 class Sweep {
  public:
-  Sweep(Solver& s, const State& state, int number, double dt, Scratch& w, const Tile& t)
-      : s_(s),
-        g_(s.setup.grid),
-        number_(number),
-        dt_(dt),
-        w_(w),
-        t_(t),
-        n_(t.nx + 2 * halo),
-        start_(state.now),
-        from_(number == 1 ? state.now : s.predicted) {}
+  Sweep(Solver& s, const Stage& stage, Scratch& w)
+      : s_(s), g_(s.setup.grid), a_(stage), w_(w), t_(stage.cells), n_(t_.nx + 2 * reach) {}
 
   StageResult run() {
     if (!g_.two_d())
@@ -59,14 +63,17 @@ class Sweep {
   CellRow& cell(int j) const { return w_.cells[j & 3]; }
   FaceRow& below(int j) const { return w_.y_faces[j & 1]; }  // faces between rows j - 1 and j
 
+  // Of the first entry of a row, among columns or the faces after them.
+  std::size_t column() const { return static_cast<std::size_t>(t_.i0 - reach + halo); }
+
   void run_rows() {
-    for (int r = t_.j0 - halo; r < t_.j0 + t_.ny + halo; ++r) {
+    for (int r = t_.j0 - reach; r < t_.j0 + t_.ny + reach; ++r) {
       close_cells(r);
-      if (r > t_.j0 - halo) find_drops(r);
+      if (r > t_.j0 - reach) find_drops(r);
       if (r < t_.j0) continue;
       const int q = r - 1;  // its neighbours above and below are closed
       find_slopes(q);
-      slope_row<G>(halo + t_.nx, second_order_, cell(q - 1), cell(q), cell(q + 1), 0, w_.y_slopes[q & 1]);
+      slope_row<G>(reach + t_.nx, second_order_, cell(q - 1), cell(q), cell(q + 1), 0, w_.y_slopes[q & 1]);
       if (q < t_.j0) continue;
       find_y_fluxes(q);
       if (q > t_.j0) finish(q - 1);
@@ -74,7 +81,7 @@ class Sweep {
   }
 
   void close_cells(int j) {
-    const std::size_t at = g_.at(t_.i0 - halo, j);
+    const std::size_t at = g_.at(t_.i0 - reach, j);
     CellRow& row = cell(j);
     if constexpr (G != Geometry::flat) std::copy_n(&s_.bed[at], n_, row.b);
     if constexpr (G == Geometry::terrain) {
@@ -82,16 +89,16 @@ class Sweep {
       std::copy_n(&s_.bed_x[at], n_, row.bx);
       std::copy_n(&s_.bed_y[at], n_, row.by);
     }
-    s_.kernels.closures(s_.closure, n_, &from_.D[at], &from_.Mx[at], &from_.My[at], row);
-    prefetch(from_, at + static_cast<std::size_t>(g_.stride()));
-    if (j < t_.j0 + 1) return;  // row j - 1 will be the next to be finished
-    prefetch(s_.next, at - static_cast<std::size_t>(g_.stride()));
-    prefetch(number_ == 1 ? s_.predicted : start_, at - static_cast<std::size_t>(g_.stride()));
+    const std::size_t here = a_.from.at(t_.i0 - reach, j);
+    s_.kernels.closures(s_.closure, n_, a_.from.D + here, a_.from.Mx + here, a_.from.My + here, row);
+    if (a_.number == 1) prefetch(a_.from, j + 1);
+    if (a_.number == 2 && j > t_.j0) prefetch(a_.to, j - 1);  // will be the next to be finished
   }
 
-  void prefetch(const Conserved& u, std::size_t at) const {
+  void prefetch(const ConstWindow& u, int j) const {
+    const std::size_t at = u.at(t_.i0 - reach, j);
     for (int k = 0; k < n_; k += Pack::lanes)
-      for (const auto* field : {&u.D, &u.Mx, &u.My}) __builtin_prefetch(field->data() + at + k);
+      for (const double* field : {u.D, u.Mx, u.My}) __builtin_prefetch(field + at + k);
   }
 
   bool wall(Side side) const { return s_.setup.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::wall; }
@@ -111,7 +118,7 @@ class Sweep {
   void find_slopes(int j) {
     if (!needs_surface(j)) return;
     CellRow& row = cell(j);
-    drop_row<G>(n_ - 1, row, row, 1, &s_.fall_x[static_cast<std::size_t>(t_.i0)], row.drop);
+    drop_row<G>(n_ - 1, row, row, 1, &s_.fall_x[column()], row.drop);
     const double half_x = 0.5 / g_.dx, half_y = 0.5 / g_.dy;
     const double *x = row.drop, *low = below(j).drop, *high = below(j + 1).drop;
     for (int k = 1; k < n_ - 1; ++k) row.gx[k] = half_x * (x[k - 1] + x[k]);
@@ -120,7 +127,7 @@ class Sweep {
   }
 
   void find_y_fluxes(int j) {
-    face_row<G>({.end = halo + t_.nx,
+    face_row<G>({.end = reach + t_.nx,
                  .before = &cell(j - 1),
                  .after = &cell(j),
                  .shift = 0,
@@ -136,7 +143,7 @@ class Sweep {
   void find_x_fluxes(int j) {
     const CellRow& row = cell(j);
     slope_row<G>(n_ - 1, second_order_, row, row, row, 1, w_.x_slopes);
-    face_row<G>({.end = halo + t_.nx,
+    face_row<G>({.end = reach + t_.nx,
                  .before = &row,
                  .after = &row,
                  .shift = 1,
@@ -166,8 +173,8 @@ class Sweep {
   // Acceleration normal to the curved bed, b_jk u_j u_k cos(slope).
   void curve(int j) {
     const CellRow& row = cell(j);
-    const std::size_t at = g_.at(t_.i0 - halo, j);
-    for (int k = halo; k < halo + t_.nx; ++k) {
+    const std::size_t at = g_.at(t_.i0 - reach, j);
+    for (int k = reach; k < reach + t_.nx; ++k) {
       const std::size_t c = at + static_cast<std::size_t>(k);
       const double u = row.u[k], v = row.v[k];
       w_.bend[k] = row.c[k] * ((s_.bed_xx[c] * (u * u) + s_.bed_yy[c] * (v * v)) + 2 * s_.bed_xy[c] * (u * v));
@@ -191,12 +198,10 @@ class Sweep {
 
   Solver& s_;
   const Grid& g_;
-  int number_;
-  double dt_;
+  const Stage& a_;
   Scratch& w_;
-  Tile t_;
-  int n_;
-  const Conserved &start_, &from_;
+  const Tile& t_;
+  int n_;  // entries of a row
   const bool second_order_ = s_.setup.scheme.second_order;
   const double inv_dx_ = 1 / g_.dx, inv_dy_ = g_.two_d() ? 1 / g_.dy : 0;
   const double fall_x_ = s_.closure.normal * s_.setup.gravity.slope_x,  // acceleration along the chart
@@ -208,15 +213,14 @@ class Sweep {
 template <Geometry G>
 typename Sweep<G>::Areas Sweep<G>::areas(int j, int k) const {
   Areas a;
-  const auto column = static_cast<std::size_t>(t_.i0);
   if constexpr (G == Geometry::bed) {
-    a.east = Pack::load_unaligned(&s_.width_face[column] + k);
-    a.west = Pack::load_unaligned(&s_.width_face[column] + k - 1);
-    a.inverse = Pack::load_unaligned(&s_.inverse_width[column] + k);
+    a.east = Pack::load_unaligned(&s_.width_face[column()] + k);
+    a.west = Pack::load_unaligned(&s_.width_face[column()] + k - 1);
+    a.inverse = Pack::load_unaligned(&s_.inverse_width[column()] + k);
   }
   if constexpr (G == Geometry::terrain) {
     const CellRow& row = cell(j);
-    const double* J = &s_.area[g_.at(t_.i0 - halo, j)] + k;
+    const double* J = &s_.area[g_.at(t_.i0 - reach, j)] + k;
     const auto face = [&](std::ptrdiff_t step) { return 0.5 * (Pack::load_unaligned(J) + Pack::load_unaligned(J + step)); };
     a.east = face(1);
     a.west = face(-1);
@@ -270,23 +274,23 @@ typename Sweep<G>::Rates Sweep<G>::rates(int j, int k) const {
 
 template <Geometry G>
 void Sweep<G>::balance(int j) {
-  const double dt = dt_, dry = s_.closure.dry_density_depth, huge = std::numeric_limits<double>::max();
-  const std::size_t start = g_.at(t_.i0 - halo, j);
-  double *Lx = &s_.next.Mx[start], *Ly = &s_.next.My[start];
-  for (int k = 0; k < halo + t_.nx; k += Pack::lanes) {
-    const auto in = [&](const std::vector<double>& field) { return Pack::load_unaligned(&field[start] + k); };
-    const Mask cells = lanes_between(halo - k, halo + t_.nx - k);
+  const double dt = a_.dt, dry = s_.closure.dry_density_depth, huge = std::numeric_limits<double>::max();
+  const std::size_t from = a_.from.at(t_.i0 - reach, j), start = a_.start.at(t_.i0 - reach, j),
+                    kept = a_.kept.at(t_.i0 - reach, j);
+  for (int k = 0; k < reach + t_.nx; k += Pack::lanes) {
+    const auto at = [&](const double* field, std::size_t first) { return Pack::load_unaligned(field + first + k); };
+    const Mask cells = lanes_between(reach - k, reach + t_.nx - k);
     const Rates r = rates(j, k);
-    Pack D_new = in(from_.D) + dt * r.D, mx = in(start_.Mx), my = in(start_.My);
-    if (number_ == 2) {
-      D_new = 0.5 * (in(start_.D) + D_new);
-      mx = mx + 0.5 * dt * (Pack::load_unaligned(Lx + k) + r.x);
-      my = my + 0.5 * dt * (Pack::load_unaligned(Ly + k) + r.y);
+    Pack D_new = at(a_.from.D, from) + dt * r.D, mx = at(a_.start.Mx, start), my = at(a_.start.My, start);
+    if (a_.number == 2) {
+      D_new = 0.5 * (at(a_.start.D, start) + D_new);
+      mx = mx + 0.5 * dt * (at(a_.kept.Mx, kept) + r.x);
+      my = my + 0.5 * dt * (at(a_.kept.My, kept) + r.y);
     } else {
       mx = mx + dt * r.x;
       my = my + dt * r.y;
-      store_where(cells, r.x, Lx + k);
-      store_where(cells, r.y, Ly + k);
+      store_where(cells, r.x, a_.kept.Mx + kept + k);
+      store_where(cells, r.y, a_.kept.My + kept + k);
     }
     D_new.store(w_.D_new + k);
     mx.store(w_.Msx + k);
@@ -295,19 +299,19 @@ void Sweep<G>::balance(int j) {
     rate_ = max(rate_, select(cells, r.wave, 0.0));
     wet_ = wet_ + select(cells & (D_new > dry), Pack(1.0), 0.0);
     if (const std::uint32_t wrong = to_integer(cells & !fine); wrong != 0)
-      result_.bad = static_cast<std::int64_t>(start) + k + std::countr_zero(wrong);
+      result_.bad = static_cast<std::int64_t>(g_.at(t_.i0 - reach, j)) + k + std::countr_zero(wrong);
   }
 }
 
 template <Geometry G>
 void Sweep<G>::apply_friction(int j) {
   const CellRow& row = cell(j);
-  const std::size_t at = g_.at(t_.i0 - halo, j);
-  Conserved& to = number_ == 1 ? s_.predicted : s_.next;
-  const FrictionArgs args{.begin = halo,
-                          .end = halo + t_.nx,
-                          .stage = number_,
-                          .dt = dt_,
+  const std::size_t start = a_.start.at(t_.i0 - reach, j), kept = a_.kept.at(t_.i0 - reach, j),
+                    to = a_.to.at(t_.i0 - reach, j);
+  const FrictionArgs args{.begin = reach,
+                          .end = reach + t_.nx,
+                          .stage = a_.number,
+                          .dt = a_.dt,
                           .h = row.h,
                           .speed = row.speed,
                           .hold = row.hold,
@@ -318,41 +322,94 @@ void Sweep<G>::apply_friction(int j) {
                           .D_new = w_.D_new,
                           .Msx = w_.Msx,
                           .Msy = w_.Msy,
-                          .Mx_old = &start_.Mx[at],
-                          .My_old = &start_.My[at],
-                          .share = &s_.next.D[at],
-                          .D = &to.D[at],
-                          .Mx = &to.Mx[at],
-                          .My = &to.My[at]};
+                          .Mx_old = a_.start.Mx + start,
+                          .My_old = a_.start.My + start,
+                          .share = a_.kept.D + kept,
+                          .D = a_.to.D + to,
+                          .Mx = a_.to.Mx + to,
+                          .My = a_.to.My + to};
   s_.kernels.friction(s_.closure, args);
 }
 
-// Fluxes through the sides of the domain.
+// Fluxes through the sides of the domain, of the tile's own cells.
 template <Geometry G>
 void Sweep<G>::record_crossings(int j) {
-  auto& crossing = s_.crossing[number_ - 1];
-  const auto row_at = static_cast<std::size_t>(j), column = static_cast<std::size_t>(t_.i0);
+  const Tile& own = a_.own;
+  if (j < own.j0 || j >= own.j0 + own.ny) return;
+  auto& crossing = s_.crossing[a_.number - 1];
+  const auto row_at = static_cast<std::size_t>(j);
   const auto area = [&](int i, int jj, int i2, int j2) {
     return G == Geometry::terrain ? 0.5 * (s_.area[g_.at(i, jj)] + s_.area[g_.at(i2, j2)]) : 1.0;
   };
-  if (t_.i0 == 0) crossing[0][row_at] = -area(-1, j, 0, j) * s_.width_face[1] * w_.x_faces.mass[1];
-  if (t_.i0 + t_.nx == g_.nx)
-    crossing[1][row_at] = area(g_.nx - 1, j, g_.nx, j) * s_.width_face[static_cast<std::size_t>(g_.nx + 1)] *
-                          w_.x_faces.mass[halo + t_.nx - 1];
+  const auto after = [&](int i) { return i - t_.i0 + reach; };  // entry of the face after cell i, or of the cell
+  if (own.i0 == 0) crossing[0][row_at] = -area(-1, j, 0, j) * s_.width_face[halo - 1] * w_.x_faces.mass[after(-1)];
+  if (own.i0 + own.nx == g_.nx)
+    crossing[1][row_at] = area(g_.nx - 1, j, g_.nx, j) * s_.width_face[static_cast<std::size_t>(g_.nx - 1 + halo)] *
+                          w_.x_faces.mass[after(g_.nx - 1)];
   if (!g_.two_d()) return;
-  for (int i = 0; i < t_.nx; ++i) {
-    const auto c = column + static_cast<std::size_t>(i);
-    if (j == 0) crossing[2][c] = -area(t_.i0 + i, -1, t_.i0 + i, 0) * below(0).mass[halo + i];
-    if (j == g_.ny - 1) crossing[3][c] = area(t_.i0 + i, j, t_.i0 + i, j + 1) * below(j + 1).mass[halo + i];
+  for (int i = own.i0; i < own.i0 + own.nx; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    if (j == 0) crossing[2][c] = -area(i, -1, i, 0) * below(0).mass[after(i)];
+    if (j == g_.ny - 1) crossing[3][c] = area(i, j, i, j + 1) * below(j + 1).mass[after(i)];
   }
 }
 
+// The cells that stage 2 of `tile` looks at: within the domain, but also beyond periodic sides.
+Tile grown(const Solver& s, const Tile& tile) {
+  const Grid& g = s.setup.grid;
+  const auto limits = [&](int begin, int n, int cells, Side side, int& out_begin, int& out_n) {
+    const bool wraps = s.setup.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::periodic;
+    out_begin = wraps ? begin - reach : std::max(begin - reach, 0);
+    out_n = (wraps ? begin + n + reach : std::min(begin + n + reach, cells)) - out_begin;
+  };
+  Tile t = tile;
+  limits(tile.i0, tile.nx, g.nx, Side::left, t.i0, t.nx);
+  if (g.two_d()) limits(tile.j0, tile.ny, g.ny, Side::bottom, t.j0, t.ny);
+  return t;
+}
+
+// Ghosts that stage 2 of `own` looks at, from what stage 1 made of `covered`. Periodic ones have been computed.
+void fill_patch_ghosts(const Solver& s, const Tile& own, const Tile& covered, double time, const Window& u) {
+  const Grid& g = s.setup.grid;
+  const auto fill = [&](Side side, int beyond, int lo, int hi) {
+    if (beyond > 0 && s.setup.boundary[static_cast<std::size_t>(side)].kind != BoundaryKind::periodic)
+      fill_side(s, side, time, lo, hi, beyond, u);
+  };
+  fill(Side::left, reach - own.i0, covered.j0, covered.j0 + covered.ny);
+  fill(Side::right, own.i0 + own.nx + reach - g.nx, covered.j0, covered.j0 + covered.ny);
+  if (!g.two_d()) return;
+  fill(Side::bottom, reach - own.j0, own.i0 - reach, own.i0 + own.nx + reach);
+  fill(Side::top, own.j0 + own.ny + reach - g.ny, own.i0 - reach, own.i0 + own.nx + reach);
+}
+
 template <Geometry G>
-StageResult run_stage(Solver& s, const State& state, int number, double dt) {
-  for (auto& side : s.crossing[number - 1]) std::fill(side.begin(), side.end(), 0.0);
+StepResult step_of_tile(Solver& s, const State& state, double dt, const Tile& own, Scratch& w) {
+  const Grid& g = s.setup.grid;
+  if (!g.two_d()) still_rows(w);
+  const Tile covered = grown(s, own);
+  const auto patch = [&](Conserved& u) {
+    const auto size = static_cast<std::size_t>((own.ny + 2 * reach) * row_size + slack);
+    for (auto* field : {&u.D, &u.Mx, &u.My})
+      if (field->size() < size) field->resize(size);
+    return Window{u.D.data(), u.Mx.data(), u.My.data(), own.i0 - 2 * reach, own.j0 - reach, row_size};
+  };
+  const ConstWindow start = window(g, state.now);
+  const Window predicted = patch(w.predicted), kept = patch(w.kept);
+  StepResult r;
+  r[0] = Sweep<G>(s, {1, dt, covered, own, start, start, predicted, kept}, w).run();
+  fill_patch_ghosts(s, own, covered, state.time + dt, predicted);
+  r[1] = Sweep<G>(s, {2, dt, own, own, start, predicted, window(g, s.next), kept}, w).run();
+  return r;
+}
+
+template <Geometry G>
+StepResult run_step(Solver& s, const State& state, double dt) {
+  for (auto& stage_crossing : s.crossing)
+    for (auto& side : stage_crossing) std::fill(side.begin(), side.end(), 0.0);
   const auto tiles = static_cast<std::int64_t>(s.active.size());
-  std::vector<StageResult>& results = s.tile_results;
+  std::vector<StepResult>& results = s.tile_results;
   results.assign(s.active.size(), {});
+  s.wet_boxes.assign(s.boxes.size(), {});
   const bool worth_it = state.now.D.size() > parallel_threshold && tiles > 1;
 #pragma omp parallel if (worth_it)
   {
@@ -360,30 +417,31 @@ StageResult run_stage(Solver& s, const State& state, int number, double dt) {
     if (!scratch) scratch = std::make_unique<Scratch>();
 #pragma omp for schedule(dynamic, 1)
     for (std::int64_t a = 0; a < tiles; ++a) {
-      const Tile& tile = s.boxes[static_cast<std::size_t>(s.active[static_cast<std::size_t>(a)])];
-      if (!s.setup.grid.two_d()) still_rows(*scratch);
-      results[static_cast<std::size_t>(a)] = Sweep<G>(s, state, number, dt, *scratch, tile).run();
+      const auto tile = static_cast<std::size_t>(s.active[static_cast<std::size_t>(a)]);
+      results[static_cast<std::size_t>(a)] = step_of_tile<G>(s, state, dt, s.boxes[tile], *scratch);
+      s.wet_boxes[tile] = wet_box(s, s.next, s.boxes[tile]);
     }
   }
-  StageResult all;
-  for (const StageResult& r : results) {
-    all.rate = std::max(all.rate, r.rate);
-    all.wet += r.wet;
-    if (r.bad >= 0) all.bad = r.bad;
-  }
+  StepResult all;
+  for (const StepResult& r : results)
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      all[k].rate = std::max(all[k].rate, r[k].rate);
+      all[k].wet += r[k].wet;
+      if (r[k].bad >= 0) all[k].bad = r[k].bad;
+    }
   return all;
 }
 
 }  // namespace
 
-StageResult stage(Solver& s, const State& state, int number, double dt) {
+StepResult both_stages(Solver& s, const State& state, double dt) {
   switch (s.geometry) {
     case Geometry::flat:
-      return run_stage<Geometry::flat>(s, state, number, dt);
+      return run_step<Geometry::flat>(s, state, dt);
     case Geometry::bed:
-      return run_stage<Geometry::bed>(s, state, number, dt);
+      return run_step<Geometry::bed>(s, state, dt);
     default:
-      return run_stage<Geometry::terrain>(s, state, number, dt);
+      return run_step<Geometry::terrain>(s, state, dt);
   }
 }
 

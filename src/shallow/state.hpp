@@ -12,6 +12,24 @@ struct Conserved {
   std::vector<double> D, Mx, My;  // D = rho h, M = D u
 };
 
+// Looks at D, M over a part of the grid whose first entry is cell (i0, j0), whoever owns them.
+template <class Number>
+struct WindowOf {
+  Number *D, *Mx, *My;
+  int i0, j0;
+  std::int64_t stride;
+  std::size_t at(int i, int j) const { return static_cast<std::size_t>((j - j0) * stride + (i - i0)); }
+  operator WindowOf<const Number>() const { return {D, Mx, My, i0, j0, stride}; }
+};
+using Window = WindowOf<double>;
+using ConstWindow = WindowOf<const double>;
+inline Window window(const Grid& g, Conserved& u) {
+  return {u.D.data(), u.Mx.data(), u.My.data(), -halo, -halo, g.stride()};
+}
+inline ConstWindow window(const Grid& g, const Conserved& u) {
+  return {u.D.data(), u.Mx.data(), u.My.data(), -halo, -halo, g.stride()};
+}
+
 struct State {
   Conserved now;
   double time = 0, next_step = 0;  // next_step <= 0: not known yet

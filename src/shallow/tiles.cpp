@@ -6,8 +6,6 @@
 namespace bagnold::shallow {
 namespace {
 
-constexpr int reach = 2;  // cells a front can cross in one step of two stages
-
 int tile_begin(int cells, int tiles, int t) { return static_cast<int>(static_cast<std::int64_t>(cells) * t / tiles); }
 
 Tile whole_tile(const Solver& s, int tx, int ty) {
@@ -27,26 +25,7 @@ bool contains(const Tile& a, const Tile& b) {
   return b.i0 >= a.i0 && b.j0 >= a.j0 && b.i0 + b.nx <= a.i0 + a.nx && b.j0 + b.ny <= a.j0 + a.ny;
 }
 
-// The box around the wet cells within `box`.
-Tile wet_box(const Solver& s, const State& state, const Tile& box) {
-  const double dry = s.closure.dry_density_depth;
-  int left = box.i0 + box.nx, right = box.i0, low = box.j0 + box.ny, high = box.j0;  // [left, right) x [low, high)
-  for (int j = box.j0; j < box.j0 + box.ny; ++j) {
-    const double* D = &state.now.D[s.setup.grid.at(0, j)];
-    double most = 0;
-    for (int i = box.i0; i < box.i0 + box.nx; ++i) most = D[i] > most ? D[i] : most;
-    if (!(most > dry)) continue;
-    low = std::min(low, j);
-    high = j + 1;
-    for (int i = box.i0; i < left; ++i)
-      if (D[i] > dry) left = i;
-    for (int i = box.i0 + box.nx - 1; i >= right; --i)
-      if (D[i] > dry) right = i + 1;
-  }
-  return {left, low, right - left, high - low};
-}
-
-// What [wet, wet + n), grown by `reach`, covers of the tile before (-1), of its own tile (0) or of the tile after (1). The
+// What [wet, wet + n), grown by `reach` (a front crosses a cell a stage at most), covers of the tile before (-1), of its own tile (0) or of the tile after (1). The
 // first two numbers are the beginning and length of the own tile, the next two those of the other.
 struct Span {
   int begin, n;
@@ -117,20 +96,33 @@ void copy_box(const Solver& s, const Tile& box, const Conserved& from, Conserved
 
 }  // namespace
 
+Tile wet_box(const Solver& s, const Conserved& u, const Tile& box) {
+  const double dry = s.closure.dry_density_depth;
+  int left = box.i0 + box.nx, right = box.i0, low = box.j0 + box.ny, high = box.j0;  // [left, right) x [low, high)
+  for (int j = box.j0; j < box.j0 + box.ny; ++j) {
+    const double* D = &u.D[s.setup.grid.at(0, j)];
+    double most = 0;
+    for (int i = box.i0; i < box.i0 + box.nx; ++i) most = D[i] > most ? D[i] : most;
+    if (!(most > dry)) continue;
+    low = std::min(low, j);
+    high = j + 1;
+    for (int i = box.i0; i < left; ++i)
+      if (D[i] > dry) left = i;
+    for (int i = box.i0 + box.nx - 1; i >= right; --i)
+      if (D[i] > dry) right = i + 1;
+  }
+  return {left, low, right - left, high - low};
+}
+
 void find_active_tiles(Solver& s, const State& state) {
-  std::vector<Tile>& wet = s.wet_boxes;
-  wet.assign(s.boxes.size(), {});
-  for (const int tile : s.active)
-    wet[static_cast<std::size_t>(tile)] = wet_box(s, state, s.boxes[static_cast<std::size_t>(tile)]);
   std::vector<Tile>& grown = s.grown_boxes;
   grown.assign(s.boxes.size(), {});
-  grow(s, wet, grown);
+  grow(s, s.wet_boxes, grown);
   feed(s, grown);
-  // Cells that fall asleep keep their films of mass in every array, so that they can be read and woken as they are.
+  // Cells that fall asleep keep their films of mass in both arrays, so that they can be read and woken as they are.
   for (const int tile : s.active) {
     const auto t = static_cast<std::size_t>(tile);
     if (contains(grown[t], s.boxes[t])) continue;
-    copy_box(s, s.boxes[t], state.now, s.predicted);
     copy_box(s, s.boxes[t], state.now, s.next);
   }
   s.boxes.swap(grown);
@@ -141,12 +133,13 @@ void find_active_tiles(Solver& s, const State& state) {
 
 void refresh(Solver& s, State& state) {
   fill_ghosts(s, state.now, state.time);
-  s.predicted = state.now;
   s.next = state.now;
   s.active.clear();
   s.boxes.clear();
+  s.wet_boxes.clear();
   for (int tile = 0; tile < s.tiles_x * s.tiles_y; ++tile) {
     s.boxes.push_back(whole_tile(s, tile % s.tiles_x, tile / s.tiles_x));
+    s.wet_boxes.push_back(wet_box(s, state.now, s.boxes.back()));
     s.active.push_back(tile);
   }
   find_active_tiles(s, state);
