@@ -34,7 +34,9 @@ void book_crossings(const Solver& s, State& state, double dt) {
 
 void advance_one_step(Solver& s, State& state) {
   const Scheme& scheme = s.setup.scheme;
-  const auto step_for = [&](double rate) { return rate > 0 ? std::min(scheme.cfl / rate, scheme.max_step) : scheme.max_step; };
+  const auto step_for = [&](double rate) {
+    return rate > 0 ? std::min(scheme.cfl / rate, scheme.max_step) : scheme.max_step;
+  };
   double dt = state.next_step;
   fill_ghosts(s, state.now, state.time);
   if (!(dt > 0)) dt = step_for(both_stages(s, state, 0)[0].rate);

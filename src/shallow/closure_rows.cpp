@@ -54,7 +54,8 @@ void closure_row(const PreparedClosure& p, int n, const double* D_row, const dou
                  CellRow& row) {
   const laws::BasalFriction<typename Law::Prepared>& law = prepared_law<Law>(p);
   const double dry = p.dry_density_depth, least = dry > 1e-100 ? dry : 1e-100;
-  const auto settle = [&](int k, const Pack& h, const Pack& alpha) __attribute__((always_inline)) {  // what follows from thickness and shape factor
+  const auto settle = [&](int k, const Pack& h, const Pack& alpha)
+      __attribute__((always_inline)) {  // what follows from thickness and shape factor
     const Pack x = min(h * p.inverse_tip_depth, 1.0), extra = alpha - 1.0;
     h.store(row.h + k);
     (1.0 + extra * (x * x * (3.0 - 2.0 * x))).store(row.alpha + k);

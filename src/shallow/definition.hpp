@@ -51,7 +51,7 @@ struct Boundary {
 struct Scheme {
   double cfl = 0.45, dry_depth = 1e-6, tip_depth = 0;
   double max_step = 1e300;
-  int tile_nx = 120, tile_ny = 32;
+  int tile_nx = 120, tile_ny = 64;
   bool second_order = true;
 };
 

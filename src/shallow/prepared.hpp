@@ -38,7 +38,7 @@ using AnyFriction = PreparedLaws<laws::FrictionLaws>::Any;
 struct PreparedClosure {
   closure::ClosureSet set;
   AnyFriction friction = laws::BasalFriction(laws::Coulomb{}.prepared(1), laws::StaticBranch{});
-  double g = 1, normal = 1;      // full and normal gravity
+  double g = 1, normal = 1;  // full and normal gravity
   double inverse_root_normal = 1;
   double dry_density_depth = 0;  // D below which a cell is dry
   double inverse_tip_depth = 1e300;

@@ -23,7 +23,7 @@ struct CellRow {
   alignas(64) Row gx, gy;                // slope of the surface: of K h + b less the fall of the chart
   alignas(64) Row b;                     // bed
   alignas(64) Row c, bx, by;             // terrain only: cosine of the slope, gradient of the bed
-  bool any_rest;                         // of cells, dry ones included; drop, gx, gy are there only if something rests, or on terrain
+  bool any_rest;  // of cells, dry ones included; drop, gx, gy are there only if something rests, or on terrain
 };
 
 // Half the limited difference over each cell in one direction: a value at an edge is that of the cell -+ this.

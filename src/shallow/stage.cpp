@@ -221,7 +221,9 @@ typename Sweep<G>::Areas Sweep<G>::areas(int j, int k) const {
   if constexpr (G == Geometry::terrain) {
     const CellRow& row = cell(j);
     const double* J = &s_.area[g_.at(t_.i0 - reach, j)] + k;
-    const auto face = [&](std::ptrdiff_t step) { return 0.5 * (Pack::load_unaligned(J) + Pack::load_unaligned(J + step)); };
+    const auto face = [&](std::ptrdiff_t step) {
+      return 0.5 * (Pack::load_unaligned(J) + Pack::load_unaligned(J + step));
+    };
     a.east = face(1);
     a.west = face(-1);
     a.north = face(g_.stride());
@@ -245,7 +247,8 @@ typename Sweep<G>::Rates Sweep<G>::rates(int j, int k) const {
   const Pack D = at(row.rho) * at(row.h), ax = A.inverse * inv_dx_, ay = A.inverse * inv_dy_;
   Rates r;
   r.D = ax * (A.west * at(X.mass - 1) - A.east * at(X.mass)) + ay * (A.south * at(S.mass) - A.north * at(N.mass));
-  Pack push_x = A.west * at(x_after - 1) - A.east * at(X.before), push_y = A.south * at(y_after) - A.north * at(N.before);
+  Pack push_x = A.west * at(x_after - 1) - A.east * at(X.before),
+       push_y = A.south * at(y_after) - A.north * at(N.before);
   if constexpr (!flat) {
     const Pack half_P = 0.5 * g * at(row.K) * D * at(row.h) * A.c;
     push_x = push_x + half_P * A.metric_x * (A.east - A.west);
@@ -267,8 +270,8 @@ typename Sweep<G>::Rates Sweep<G>::rates(int j, int k) const {
     r.x = select(still, 0.0, r.x);
     r.y = select(still, 0.0, r.y);
   }
-  r.wave = ax * max(A.east * at(X.speed), A.west * at(X.speed - 1)) +
-           ay * max(A.north * at(N.speed), A.south * at(S.speed));
+  r.wave =
+      ax * max(A.east * at(X.speed), A.west * at(X.speed - 1)) + ay * max(A.north * at(N.speed), A.south * at(S.speed));
   return r;
 }
 
