@@ -82,6 +82,7 @@ void add_regime(nlohmann::ordered_json& flow, const cg::RegimeReport& report) {
   flow["energy_ratio"] = or_nan(report.energy_ratio);
   flow["energy_ratio_err"] = or_nan(report.energy_ratio_err);
   flow["energy_growth"] = or_nan(report.growth);
+  flow["energy_growth_err"] = or_nan(report.growth_err);
   flow["energy_swing"] = or_nan(report.swing);
 }
 

@@ -37,19 +37,30 @@ Pieces averages(std::span<const double> t, const std::vector<double>& f, std::si
 }
 
 struct Trend {
-  double slope, slope_err, deviation;  // deviation: standard deviation of what the line leaves
+  double slope, deviation;  // deviation: standard deviation of what the line leaves
+  double slope_err, mean_err;
 };
 
+// Standard errors are those of noise whose correlation decays like that of neighbouring pieces, r^k: sqrt((1 + r)/(1 - r)) times
+// those of independent pieces. Fitting a line has made r too small by (1 + 3 r)/n.
 Trend fit_line(const Pieces& p) {
   const double t0 = mean_of(p.t), f0 = mean_of(p.value), n = static_cast<double>(p.t.size());
-  double tt = 0, tf = 0, rest = 0;
+  double tt = 0, tf = 0;
   for (std::size_t k = 0; k < p.t.size(); ++k) {
     tt += (p.t[k] - t0) * (p.t[k] - t0);
     tf += (p.t[k] - t0) * (p.value[k] - f0);
   }
   const double slope = tf / tt;
-  for (std::size_t k = 0; k < p.t.size(); ++k) rest += std::pow(p.value[k] - f0 - slope * (p.t[k] - t0), 2);
-  return {slope, std::sqrt(rest / (n - 2) / tt), std::sqrt(rest / (n - 2))};
+  double rest = 0, product = 0, previous = 0;
+  for (std::size_t k = 0; k < p.t.size(); ++k) {
+    const double left = p.value[k] - f0 - slope * (p.t[k] - t0);
+    rest += left * left;
+    product += left * previous;
+    previous = left;
+  }
+  const double r = rest > 0 ? product / rest : 0, correlation = std::clamp((n * r + 1) / (n - 3), 0.0, 0.9);
+  const double deviation = std::sqrt(rest / (n - 2)), longer = std::sqrt((1 + correlation) / (1 - correlation));
+  return {slope, deviation, longer * deviation / std::sqrt(tt), longer * deviation / std::sqrt(n)};
 }
 
 bool has_arrested(const EnergySeries& e, double mean_elastic, const RegimeCriteria& c) {
@@ -70,36 +81,36 @@ std::string_view name_of(Regime regime) {
 RegimeReport classify(const EnergySeries& e, std::optional<double> layering, const RegimeCriteria& c) {
   RegimeReport out;
   if (e.t.size() < 2 || !(e.t.back() > e.t.front())) return out;
-  const double end = e.t.back(), duration = end - e.t.front();
-  std::vector<double> late;
-  for (std::size_t n = 0; n < e.t.size(); ++n)
-    if (e.t[n] >= end - 0.5 * duration) late.push_back(e.elastic[n]);
-  const double mean_elastic = mean_of(late);
+  const double end = e.t.back(), begin = 0.5 * (e.t.front() + end);
+  const auto first = static_cast<std::size_t>(std::lower_bound(e.t.begin(), e.t.end(), begin) - e.t.begin());
+  const double mean_elastic = mean_of({e.elastic.begin() + static_cast<std::ptrdiff_t>(first), e.elastic.end()});
   if (!(mean_elastic > 0)) return out;
 
-  const double window = std::min(std::max(c.window * duration, c.least_window), 0.5 * duration);
-  const auto first = static_cast<std::size_t>(std::lower_bound(e.t.begin(), e.t.end(), end - window) - e.t.begin());
   std::vector<double> ratio;
   for (std::size_t n = first; n < e.t.size(); ++n) ratio.push_back(e.kinetic[n] / mean_elastic);
-  out.energy_ratio = mean_of(ratio);
+  const double mean = mean_of(ratio);
+  out.energy_ratio = mean;
   if (has_arrested(e, mean_elastic, c)) {
     out.regime = Regime::arrested;
     return out;
   }
   const std::span<const double> times = e.t.subspan(first);
   // Unit times (d/g)^1/2 are long against collisions and short against the swings of oscillating flow.
-  const auto pieces = static_cast<std::size_t>(std::clamp(window, 8.0, 400.0));
-  const Pieces fine = averages(times, ratio, pieces), coarse = averages(times, ratio, 8);
-  if (fine.t.size() < 8 || coarse.t.size() < 8) return out;
-  const Trend slow = fit_line(coarse), fast = fit_line(fine);
-  out.energy_ratio_err = slow.deviation / std::sqrt(8.0);
-  out.growth = slow.slope * window / *out.energy_ratio;
-  out.swing = fast.deviation / *out.energy_ratio;
-  const bool trend = std::abs(*out.growth) > c.growth && std::abs(slow.slope) > c.growth_errors * slow.slope_err;
-  if (*out.swing > c.swing && !trend)
+  const auto pieces = static_cast<std::size_t>(std::clamp(end - begin, 16.0, 1000.0));
+  const Pieces fine = averages(times, ratio, pieces), coarse = averages(times, ratio, 16);
+  if (fine.t.size() < 16 || coarse.t.size() < 16) return out;
+  Pieces powers = coarse;
+  for (double& t : powers.t) t = std::log(t);
+  for (double& f : powers.value) f = std::log(std::max(f, c.arrested_ratio * mean));
+  const Trend power = fit_line(powers);
+  out.energy_ratio_err = fit_line(coarse).mean_err;
+  out.growth = power.slope;
+  out.growth_err = power.slope_err;
+  out.swing = fit_line(fine).deviation / mean;
+  if (std::abs(*out.growth) > std::max(c.exponent, c.errors * *out.growth_err))
+    out.regime = *out.growth > 0 ? std::optional(Regime::accelerating) : std::nullopt;
+  else if (*out.swing > c.swing)
     out.regime = Regime::oscillating;
-  else if (trend)
-    out.regime = slow.slope > 0 ? std::optional(Regime::accelerating) : std::nullopt;
   else
     out.regime = layering && *layering > c.layer_order ? Regime::layered : Regime::steady;
   return out;
