@@ -176,9 +176,7 @@ TEST(Regime, SlowModesAreNotAcceleration) {
     EXPECT_GE(count(cg::Regime::steady, end, 0.05, 50, balance), 190) << end;
   }
   EXPECT_GE(count(cg::Regime::steady, 150, 0.05, 20, approach), 190);
-  EXPECT_EQ(
-      count(cg::Regime::accelerating, 2000, 0.2, 50, balance) + count(cg::Regime::oscillating, 2000, 0.2, 50, balance),
-      200);
+  EXPECT_GE(count(cg::Regime::oscillating, 2000, 0.2, 50, balance), 190);
 }
 
 TEST(Regime, AccelerationIsFoundUnderSlowModes) {
