@@ -119,9 +119,12 @@ void add(ProfileMoments& p, const Grains& grains, std::int64_t flowing, const Co
 
 void prepare_shares(ProfileScratch& w, std::size_t grains) {
   if (w.shares.size() < grains) w.shares.resize(grains);
-  if (w.unfinished) std::fill(w.shares.begin(), w.shares.end(), ContactShare{});
+  if (w.slot.size() < grains) w.slot.resize(grains, -1);
+  if (w.unfinished) {
+    std::fill(w.shares.begin(), w.shares.end(), ContactShare{});
+    std::fill(w.slot.begin(), w.slot.end(), -1);
+  }
   w.unfinished = true;
-  w.slot.assign(grains, -1);
 }
 
 Place place(const ProfileMoments& p, double z) {

@@ -137,6 +137,7 @@ class BinDeposit {
         grain_[touched] = g;
         share_[touched] = w_.slot[i];
         touched += w_.slot[i] >= 0 ? 1 : 0;
+        w_.slot[i] = -1;
         return g;
       });
       add_sums(bin + kFabric, touched, [&](std::size_t t, Lanes& a, Lanes& b) {

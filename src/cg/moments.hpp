@@ -9,7 +9,7 @@
 //
 // so a bin needs the sums of q s^k only. In other words: a grain is shared among the nodes of its bin with weights that add up to
 // one. Nodes carry the exact kernel and its exact derivatives, so the balances of mass and momentum stay exact to
-// round-off, whatever the polynomials neglect. The Gaussian keeps 10 powers in bins of w/2, which leaves 1e-12 of the peak;
+// round-off, whatever the polynomials neglect. The Gaussian keeps 9 powers in bins of w/2, which leaves 2e-11 of the peak;
 // Lucy and Heaviside are polynomials between their knots, which lie on edges of bins, and are not approximated at all.
 //
 // Contact stress needs no special function per contact: -f_a r_b [Phi(z - z_j) - Phi(z - z_i)]/(z_i - z_j) is a
@@ -73,8 +73,8 @@ struct alignas(64) ContactShare {
 // Memory of the functions below, kept between calls so that nothing is allocated.
 struct ProfileScratch {
   std::vector<ContactShare> shares;         // 0 between calls,
+  std::vector<std::int32_t> slot;           // of a grain in `shares`; -1 if it touches nothing, and between calls,
   bool unfinished = false;                  // unless one was left by an exception
-  std::vector<std::int32_t> slot;           // of a grain in `shares`; -1 if it touches nothing
   std::vector<std::int32_t> next_slot;      // by slab
   std::vector<std::int32_t> bin, count;     // of a grain; by range of grains and bin
   std::vector<std::int32_t> begin, order;   // by bin; grains in the order of their bins

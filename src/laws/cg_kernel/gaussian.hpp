@@ -23,7 +23,7 @@ struct CgGaussian {
   }
 
   // Powers that a profile keeps of the place in a bin, and bins per cut-off; see cg/moments.hpp.
-  static constexpr int expansion_terms = 10, bins_per_support = 16;
+  static constexpr int expansion_terms = 9, bins_per_support = 16;
 
   double support(int /*dimension*/) const { return 8 * width; }
 
