@@ -123,16 +123,33 @@ inline void write(const std::string& name, const std::vector<Grain>& grains) {
                         g.omega.x, g.omega.y, g.omega.z, g.diameter);
 }
 
-// The flow kept as bench-<name>.state, developed now if it is not there.
-inline std::vector<Grain> flow(const std::string& name, const dem::ContactLaws& laws, double spread, double time) {
+// The flow kept as bench-<name>.state, made now if it is not there.
+template <class Make>
+std::vector<Grain> flow(const std::string& name, Make&& make) {
   const std::string file = "bench-" + name + ".state";
   if (read(file).empty()) {
-    fmt::print("developing the {} flow for {} time units, once ...\n", name, time);
-    write(file, develop(laws, spread, time));
+    fmt::print("developing the {} flow, once ...\n", name);
+    write(file, make());
   }
   return read(file);  // the same bits whether it was there or not
 }
 
-inline std::vector<Grain> developed_flow() { return flow("developed", linear_laws(), 0, 20); }
+inline std::vector<Grain> developed_flow() {
+  return flow("developed", [] { return develop(linear_laws(), 0, 20); });
+}
+
+inline std::vector<Grain> unequal_flow() {
+  return flow("unequal", [] { return develop(linear_laws(), 0.2, 20); });
+}
+
+// The developed flow one time unit later, under these laws.
+inline std::vector<Grain> later_flow(const std::string& name, const dem::ContactLaws& laws) {
+  return flow(name, [&] {
+    dem::DemState s = make_state(developed_flow(), 1, 1);
+    prepare(s, laws);
+    advance(s, laws, std::llround(1 / s.dt));
+    return grains_of(s);
+  });
+}
 
 }  // namespace bagnold::bench

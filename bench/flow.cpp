@@ -200,17 +200,20 @@ int main(int argc, char** argv) {
   if (!quick) add(compare("steady", make_state(steady_flow(), 1, 1), linear, 3000, lammps));
   add(compare("developed", make_state(developed, 4, 2), linear, 300, lammps));
   add(compare("developed", make_state(developed, 8, 8), linear, 150, lammps));
-  const Row unequal = compare("unequal", make_state(flow("unequal", linear, 0.2, 20), 1, 1), linear, 3000, false);
-  const Row like = compare("hertz", make_state(flow("hertz", hertz, 0, 20), 1, 1), hertz, 3000, false);
+  const Row unequal = compare("unequal", make_state(unequal_flow(), 1, 1), linear, 3000, false);
+  // Both laws from the same flow, so that they have about the same contacts.
+  const Row later = compare("linear", make_state(later_flow("linear", linear), 1, 1), linear, 3000, false);
+  const Row like = compare("hertz", make_state(later_flow("hertz-contacts", hertz), 1, 1), hertz, 3000, false);
   add(unequal);
+  add(later);
   add(like);
-  const auto cost = [&](const Row& r) {
+  const auto cost = [&](const Row& r, const Row& plain) {
     fmt::print(
         "{:>10}: {:.2f} times the cost per grain-step of equal grains with the linear law, {:.2f} times per contact\n",
-        r.flow, rows[0].fast / r.fast, rows[0].fast * rows[0].contacts / (r.fast * r.contacts));
+        r.flow, plain.fast / r.fast, plain.fast * plain.contacts / (r.fast * r.contacts));
   };
-  cost(unequal);
-  cost(like);
+  cost(unequal, rows[0]);
+  cost(like, later);
 
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   std::array<double, 2> faster{1, 1};

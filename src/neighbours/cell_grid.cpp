@@ -47,16 +47,28 @@ std::array<int, 3> shape_cells(CellGrid& grid, const Box& box, std::span<const V
   return count;
 }
 
+// Width of an even distribution with the same mean distance from its middle: a few points far from the rest hardly count.
+double spread(std::span<const Vec3> x, int k) {
+  const double n = std::max(1.0, static_cast<double>(x.size()));
+  double sum = 0, distance = 0;
+  for (const Vec3& p : x) sum += p[k];
+  for (const Vec3& p : x) distance += std::abs(p[k] - sum / n);
+  return 4 * distance / n;
+}
+
 }  // namespace
 
 void sort_into_cells(CellGrid& grid, const Box& box, std::span<const Vec3> x, double cutoff) {
   const std::array<int, 3> count = shape_cells(grid, box, x, cutoff);
   grid.axis = {0, 1, 2};
   // Slabs along a periodic direction hold about as much each; those along the height of a flow do not.
-  const auto rank = [&](int k) {
-    return (box.periodic[static_cast<std::size_t>(k)] ? 5 : 4) * count[static_cast<std::size_t>(k)];
-  };
-  std::stable_sort(grid.axis.begin(), grid.axis.end(), [&](int a, int b) { return rank(a) > rank(b); });
+  std::array<double, 3> rank{};
+  for (int k = 0; k < 3; ++k)
+    rank[static_cast<std::size_t>(k)] = box.periodic[static_cast<std::size_t>(k)]
+                                            ? 2.0 * count[static_cast<std::size_t>(k)]
+                                            : spread(x, k) / grid.cell[k];
+  std::stable_sort(grid.axis.begin(), grid.axis.end(),
+                   [&](int a, int b) { return rank[static_cast<std::size_t>(a)] > rank[static_cast<std::size_t>(b)]; });
   for (std::size_t k = 0; k < 3; ++k) {
     grid.count[k] = count[static_cast<std::size_t>(grid.axis[k])];
     grid.periodic[k] = box.periodic[static_cast<std::size_t>(grid.axis[k])];

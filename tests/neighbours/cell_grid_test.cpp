@@ -77,6 +77,15 @@ TEST(CellGrid, PointsSpreadFarApartDoNotExhaustMemory) {
   expect_all_pairs(box, x, 0.4);
 }
 
+TEST(CellGrid, SlabsOfAChuteLieAlongItWhateverIsThrownUp) {
+  std::vector<Vec3> x;
+  for (int k = 0; k < 4000; ++k) x.push_back({0.05 + k % 200 * 0.1, 0.5 + k / 200 % 10, k / 2000 * 10.0 + k % 10});
+  for (int k = 0; k < 20; ++k) x.push_back({1, 1, 200.0 + k});
+  CellGrid grid;
+  sort_into_cells(grid, {{0, 0, 0}, {20, 10, 1}, {true, true, false}}, x, 1.24);
+  EXPECT_EQ(grid.axis[0], 0);
+}
+
 TEST(CellGrid, OddNumbersOfLayersKeepSlabsOfOneParityApart) {
   for (const double layers : {2.5, 3.5, 5.5, 7.5, 130.5}) {
     const Box box{{}, {layers, 1, 1}, {true, true, true}};

@@ -337,8 +337,10 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
     neighbours::CellGrid grid;
     neighbours::sort_into_cells(grid, engine.box, start, largest_diameter(g) + engine.skin);
     grid.slabs = grid.count[0];
-    engine.ring = make_ring(grid.slabs, steps_per_pass);
     place_rows(engine, g, grid, start);
+    std::vector<std::size_t> sizes;
+    for (const Slab& slab : engine.slabs) sizes.push_back(slab.end - slab.begin);
+    engine.ring = make_ring(sizes, steps_per_pass);
     list_outer(engine, g, grid, start);
   }
   take_grains(engine, g);

@@ -14,31 +14,47 @@
 // divides time into epochs, t = step mod levels, and a pass may cover any part [from, to) of an epoch: neither threads
 // nor where a pass ends change a result.
 #pragma once
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <vector>
 
 namespace bagnold::dem::fast {
 
 struct Ring {
-  int slabs = 1, blocks = 1, levels = 1;
-  int block_begin(int k) const { return static_cast<int>(static_cast<long>(slabs) * k / blocks); }
+  int slabs = 1, levels = 1;
+  std::vector<int> border{0, 1};  // block k has the slabs from border[k] to border[k + 1]
+  int blocks() const { return static_cast<int>(border.size()) - 1; }
   int wrap(int a) const { return a < 0 ? a + slabs : a >= slabs ? a - slabs : a; }
 };
 
-// At most `levels` steps per pass, blocks of at least 16 slabs (or 2 * levels, to have two), an even number of them.
-inline Ring make_ring(int slabs, int levels) {
-  Ring ring{slabs, 1, levels};
+// At most `levels` steps per pass. Blocks, an even number of them, have about 16 slabs and about as many grains each;
+// grains[a]: those in slab a.
+inline Ring make_ring(const std::vector<std::size_t>& grains, int levels) {
+  const auto slabs = static_cast<int>(grains.size());
+  Ring ring{slabs, levels, {0}};
   while (ring.levels > 1 && slabs < 2 * ring.levels) --ring.levels;
-  if (slabs >= 4 * ring.levels && slabs >= 8) ring.blocks = slabs < 64 ? 2 : slabs / 32 * 2;
+  const int fewest = 2 * ring.levels, blocks = slabs < 2 * fewest || slabs < 8 ? 1 : slabs < 64 ? 2 : slabs / 32 * 2;
+  const std::size_t all = std::reduce(grains.begin(), grains.end());
+  std::size_t before = 0;  // grains in the slabs before `a`
+  for (int k = 1, a = 0; k < blocks; ++k) {
+    const int first = ring.border.back() + fewest, last = slabs - (blocks - k) * fewest;
+    while (a < first || (a < last && before * static_cast<std::size_t>(blocks) < all * static_cast<std::size_t>(k)))
+      before += grains[static_cast<std::size_t>(a++)];
+    ring.border.push_back(a);
+  }
+  ring.border.push_back(slabs);
   return ring;
 }
 
 // move(slab, t) and act(section, t) for every slab, section and t in [from, to), on all threads.
 template <class Move, class Act>
 void sweep(const Ring& ring, int from, int to, bool threads, Move&& move, Act&& act) {
-#pragma omp parallel if (threads && ring.blocks > 1)
+#pragma omp parallel if (threads && ring.blocks() > 1)
   {
 #pragma omp for schedule(static)
-    for (int k = 0; k < ring.blocks; ++k) {
-      const int b = ring.block_begin(k), e = ring.block_begin(k + 1);
+    for (int k = 0; k < ring.blocks(); ++k) {
+      const int b = ring.border[static_cast<std::size_t>(k)], e = ring.border[static_cast<std::size_t>(k) + 1];
       for (int front = b + from; front <= e - 1 - from; ++front)
         for (int t = from; t < to; ++t) {
           const int a = front - (t - from);
@@ -48,8 +64,8 @@ void sweep(const Ring& ring, int from, int to, bool threads, Move&& move, Act&& 
         }
     }
 #pragma omp for schedule(static) nowait
-    for (int k = 0; k < ring.blocks; ++k) {
-      const int e = ring.block_begin(k + 1);
+    for (int k = 0; k < ring.blocks(); ++k) {
+      const int e = ring.border[static_cast<std::size_t>(k) + 1];
       for (int t = from; t < to; ++t) {
         for (int a = e - t; a <= e - 1 + t; ++a) move(ring.wrap(a), t);
         for (int a = e - 1 - t; a <= e - 1 + t; ++a) act(ring.wrap(a), t);

@@ -19,11 +19,13 @@ struct HertzNormal {
   static constexpr bool constant_stiffness = false;
   N modulus;  // E*, force/area
   N alpha;    // damping number, -
+  // With x = K sqrt(delta): x delta, alpha sqrt(m_ij x), 3/2 x.
   NormalResponse<N> respond(N overlap, const PairSize<N>& size) const {
-    const N k = N(4.0 / 3) * modulus * sqrt(size.reduced_radius);
-    const N root = sqrt(overlap);
-    return {k * overlap * root, alpha * sqrt(size.reduced_mass() * k * root), N(1.5) * k * root};
+    const N x = N(4.0 / 3) * modulus * sqrt(size.reduced_radius * overlap);
+    return {x * overlap, alpha * (x * rsqrt(x * size.inverse_reduced_mass)), N(1.5) * x};
   }
+  // Stiffness at the overlap `before` over that at `now` > 0.
+  N stiffness_ratio(N before, N now) const { return sqrt(before / now); }
   N energy(N overlap, const PairSize<N>& size) const {
     return N(8.0 / 15) * modulus * sqrt(size.reduced_radius * overlap) * overlap * overlap;
   }

@@ -82,20 +82,20 @@ Vec3Of<N> stretched(const Vec3Of<N>& spring, const Vec3Of<N>& rate, const PairGe
   return spring + dt * (rate - (dot(spring, g.v) * g.turn_rate) * g.n);
 }
 
-// Tangent stiffness of the normal law a step ago, relative to now. The drift is linear, so the overlap then was
+// Tangent stiffness of the normal law a step ago over that of now. The drift is linear, so the overlap then was
 // overlap + v_n dt up to the turning of the pair.
 template <class N, class Normal>
-N earlier_stiffness(const Normal& law, const PairGeometry<N>& g, const PairSize<N>& size, N dt) {
-  return law.respond(max(N(0), g.overlap + dt * g.vn), size).stiffness;
+N earlier_stiffness(const Normal& law, const PairGeometry<N>& g, N dt) {
+  return law.stiffness_ratio(max(N(0), g.overlap + dt * g.vn), g.overlap);
 }
 
-// A spring whose stiffness was `earlier` a step ago: its force is kept while the stiffness grows, its
-// length while it falls, so no energy appears. Returns the energy given up.
+// A spring of stiffness `now` that was `earlier` times as stiff a step ago: its force is kept while the stiffness grows,
+// its length while it falls, so no energy appears. Returns the energy given up.
 template <class N>
 N rescale(Vec3Of<N>& spring, N earlier, N now) {
-  const N factor = min(N(1), earlier / now), length2 = dot(spring, spring);
+  const N factor = min(N(1), earlier), length2 = dot(spring, spring);
   spring = factor * spring;
-  return N(0.5) * length2 * (earlier - now * factor * factor);
+  return N(0.5) * now * length2 * (earlier - factor * factor);
 }
 
 // Energy a slider takes that cuts a spring from `trial` to `cut`: the mean force over the step (its energy at half-step
@@ -107,15 +107,14 @@ N slip_loss(N stiffness, const Vec3Of<N>& before, const Vec3Of<N>& trial, const 
 
 // Tangential part, algorithm 2. Advance: the springs move on by dt; otherwise the history is only read.
 template <bool Advance, class N, class Normal, class Tangential, class Rolling>
-void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g, const PairSize<N>& size,
+void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g,
                     const NormalResponse<N>& normal, N dt, PairHistory<N>& history, PairForce<N>& out) {
   const N kt = law.tangential.stiffness(normal), gamma = law.tangential.damping(normal);
   Vec3Of<N>& spring = history.spring;
   Vec3Of<N> before = spring;
   if constexpr (Advance) {
     if constexpr (!Normal::constant_stiffness && !Tangential::constant_stiffness) {
-      const N earlier = kt * earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
-      out.slide_loss = out.slide_loss + rescale(spring, earlier, kt);
+      out.slide_loss = out.slide_loss + rescale(spring, earlier_stiffness(law.normal, g, dt), kt);
       before = spring;
     }
     spring = stretched(spring, g.slip, g, dt);
@@ -149,8 +148,7 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
   Vec3Of<N> before = roll;
   if constexpr (Advance) {
     if constexpr (!Normal::constant_stiffness) {
-      const N earlier = kr * earlier_stiffness(law.normal, g, size, dt) / normal.stiffness;
-      out.roll_loss = out.roll_loss + rescale(roll, earlier, kr);
+      out.roll_loss = out.roll_loss + rescale(roll, earlier_stiffness(law.normal, g, dt), kr);
       before = roll;
     }
     roll = stretched(roll, g.spin, g, dt);
@@ -181,7 +179,7 @@ PairForce<N> interact(const PairLaw<Normal, Tangential, Rolling>& law, const Pai
   out.normal_damping = N(0) - normal.damping * g.vn;
   out.normal = normal.elastic + out.normal_damping;
   out.force = out.normal * g.n;
-  add_tangential<Advance>(law, g, size, normal, dt, history, out);
+  add_tangential<Advance>(law, g, normal, dt, history, out);
   if constexpr (Rolling::active) add_rolling<Advance>(law, g, size, normal, dt, history, out);
   return out;
 }
