@@ -100,10 +100,6 @@ TEST(ProfileOfARunningEngine, IsThatOfItsSnapshotsSampleAfterSample) {
 
 // Grains of several sizes, contacts with the base, level contacts, more than one slab and an odd number of them.
 TEST(ProfileFromInsideTheFastEngine, IsThatOfItsSnapshotsWhateverTheThreads) {
-  if (!dem::fast::available) {  // nothing to look into
-    EXPECT_FALSE(dem::fast::supports(small_chute(2e-3, 9)));
-    return;
-  }
   const auto laws = soft_laws();
   const int threads_before = threads();
   for (const int copies : {1, 9}) {

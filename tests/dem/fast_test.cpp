@@ -79,7 +79,7 @@ double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b
 TEST(Fast, FollowsThePlainEngine) {
   for (const Mixture& mixture : mixtures()) {
     DemState fast = dense_flow(mixture), plain = fast;
-    ASSERT_EQ(fast::supports(fast), fast::available);
+    ASSERT_TRUE(fast::supports(fast));
     for (int k = 0; k < 3; ++k) {  // 400 steps: neighbours part and meet, round-off has grown little
       advance(fast, mixture.laws, 130 + k);
       advance_plain(plain, mixture.laws, 130 + k);
@@ -198,7 +198,7 @@ TEST(Fast, PlainEngineGoesOnFromItsState) {
 
 TEST(Fast, LeavesToThePlainEngineWhatItCannotDo) {
   DemState s = dense_flow(mixtures()[0]);
-  EXPECT_EQ(fast::supports(s), fast::available);
+  EXPECT_TRUE(fast::supports(s));
   s.keep_ledger = true;
   EXPECT_FALSE(fast::supports(s));
   s.keep_ledger = false;

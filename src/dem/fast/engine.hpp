@@ -73,16 +73,8 @@ struct Engine {
 // Below this the plain engine is as fast.
 inline constexpr std::int64_t fewest_grains = 64;
 
-// Builds without AVX-512 leave every state to the plain engine: packs of eight are no gain that anybody has measured
-// on narrower registers.
-#ifdef BAGNOLD_AVX512
-inline constexpr bool available = true;
-#else
-inline constexpr bool available = false;
-#endif
-
-// False when the plain engine must do it: no AVX-512, energy ledger kept, walls, a few grains only, or a periodic box
-// only a few grains wide.
+// False when the plain engine must do it: energy ledger kept, walls, a few grains only, or a periodic box only a few
+// grains wide.
 bool supports(const DemState& state);
 
 // While the engine is at work it holds the grains and their contacts: the arrays x, v, omega, force, torque and `pairs`

@@ -284,7 +284,7 @@ void list_inner(Engine& engine, const PairList& remembered) {
 
 bool supports(const DemState& state) {
   const Grains& g = state.grains;
-  if (!available || state.keep_ledger || !state.walls.empty() || g.flowing < fewest_grains) return false;
+  if (state.keep_ledger || !state.walls.empty() || g.flowing < fewest_grains) return false;
   for (int k = 0; k < 3; ++k)
     if (state.box.periodic[at(k)] && state.box.length[k] < 2 * (largest_diameter(g) + 2 * skin_of(g))) return false;
   return true;
