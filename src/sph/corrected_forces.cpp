@@ -15,19 +15,30 @@ template <int D>
 struct PressureRecord {
   static constexpr int area = 0, volume = 1, eta = 2, zeta = 3, P = 4, size = 4 + D * D;  // P = p V B
 };
-// Fields of a record of the second sweep of the viscous force; the last two are seen in the frame of the parent.
+// Fields of the records of the three sweeps of the viscous force: velocities; gradients, `sign` turning tangential
+// components of what an image hands to its parent (-1 under the no-slip floor); stresses T B.
+template <int D>
+struct GradientRecord {
+  static constexpr int v = 0, sign = D, L = D + 1, size = L + D * D;
+};
 template <int D>
 struct StressRecord {
-  static constexpr int v = 0, area = D, sign = D + 1, T = D + 2, L = T + D * D, size = L + D * D;
-  static constexpr int width = D == 2 ? 16 : 32;
+  static constexpr int area = 0, T = 1, size = T + D * D;
 };
 
 template <int D>
+auto& gradient_records(Work& w) {
+  if constexpr (D == 2)
+    return w.slim2;
+  else
+    return w.wide;
+}
+template <int D>
 auto& stress_records(Work& w) {
   if constexpr (D == 2)
-    return w.wide;
+    return w.slim;
   else
-    return w.broad;
+    return w.wide2;
 }
 
 template <int D>
@@ -86,7 +97,7 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     const double* self = w.wide.at(k);
-    Pack force[D]{}, quartic[Quartic<D>::size]{}, block[D * (D + 1) / 2]{}, around{};
+    Pack force[D]{}, block[D * (D + 1) / 2]{}, around{};
     for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
       Pack other[F::size], r[D];
       gather(w.wide, j, other);
@@ -98,7 +109,6 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
       const Pack weight = coefficient * 0.5 * (self[F::area] * other[F::volume] + other[F::area] * self[F::volume]);
       const Pack kk = Mean::of(Pack(self[F::eta]), other[F::eta]) * weight * f / (r2 + tiny);
       w.k[q] = kk;
-      Quartic<D>::add(quartic, 0.5 * kk, r);
       const Pack stress = other[F::volume] * ai * ai, isotropic = (other[F::eta] / 3 + other[F::zeta]) * stress;
       around += 2 * other[F::eta] * stress * r2;
       for (int a = 0, m = 0; a < D; ++a)
@@ -107,16 +117,15 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
     for (std::size_t d = 0; d < D; ++d) w.acceleration[d][i] = model.gravity[d] + lane_sum(force[d]) / p.mass[i];
     if (model.axisymmetric)
       w.acceleration[0][i] += w.pressure[i] * w.volume[i] * inverse_radius(model, p.x[0][i]) / p.mass[i];
-    for (std::size_t m = 0; m < Quartic<D>::size; ++m) w.quartic[i * Quartic<D>::size + m] = lane_sum(quartic[m]);
     store_block<D>(w, model, p, i, block, lane_sum(around));
   });
 }
 
-// First sweep: L = S B and T = V (2 eta e' + zeta tr L 1) - (H - K:L); leaves T B and L in the stress records, hoop force in `force`.
+// First sweep: L = S B.
 template <int D>
-void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
-  using F = StressRecord<D>;
-  auto& records = stress_records<D>(w);
+void gradient_sweep(Work& w, const Particles& p, const Field& v) {
+  using F = GradientRecord<D>;
+  auto& records = gradient_records<D>(w);
   const std::int64_t n = p.size();
   w.slim.resize(w.pairs.elements(n));
   records.resize(w.pairs.elements(n));
@@ -131,25 +140,71 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& 
   });
   std::fill_n(w.slim.at(w.pairs.elements(n) - 1), 8, 0.0);
   parallel_for(n, [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
     const double* self = w.slim.at(k);
-    Pack S[D * D]{}, H[D * (D + 1) / 2]{};
+    Pack S[D * D]{};
     for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Pack other[D + 1], r[D], dv[D], vr{};
+      Pack other[D + 1];
       gather(w.slim, j, other);
-      for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q], dv[d] = self[d] - other[d], vr += dv[d] * r[d];
-      const Pack af = other[D] * w.f[q], t = 0.5 * w.k[q] * vr;
-      for (int a = 0, m = 0; a < D; ++a) {
-        for (int b = 0; b < D; ++b) S[a * D + b] += af * dv[a] * r[b];
-        for (int b = a; b < D; ++b, ++m) H[m] += t * r[a] * r[b];
+      const Pack af = other[D] * w.f[q];
+      for (int a = 0; a < D; ++a) {
+        const Pack dv = af * (self[a] - other[a]);
+        for (std::size_t b = 0; b < D; ++b) S[a * D + static_cast<int>(b)] += dv * w.r[b][q];
       }
     });
     Matrix<D> s;
-    std::array<double, D*(D + 1) / 2> h;
     for (std::size_t m = 0; m < s.size(); ++m) s[m] = lane_sum(S[m]);
-    for (std::size_t m = 0; m < h.size(); ++m) h[m] = lane_sum(H[m]);
-    const Matrix<D> B = matrix_at<D>(w.correction, k), L = product<D>(s, B), left = from_upper<D>(h.data()),
-                    taken = Quartic<D>::contract(w.quartic.data() + i * Quartic<D>::size, L);
+    const Matrix<D> L = product<D>(s, matrix_at<D>(w.correction, k));
+    double* to = records.at(k);
+    std::copy_n(self, D, to + F::v);
+    to[F::sign] = 1;
+    std::copy(L.begin(), L.end(), to + F::L);
+  });
+  fill_images(w.pairs, n, records, [&](std::size_t image, const double* from, double* to) {
+    const auto &S = w.pairs.images.S[image], &R = w.pairs.images.R[image];
+    for (std::size_t d = 0; d < D; ++d) to[F::v + d] = S[d] * from[F::v + d];
+    to[F::sign] = R[0] * S[0] * from[F::sign];
+    for (std::size_t a = 0; a < D; ++a)
+      for (std::size_t b = 0; b < D; ++b) to[F::L + a * D + b] = S[a] * R[b] * from[F::L + a * D + b];
+  });
+  std::fill_n(records.at(w.pairs.elements(n) - 1), F::size, 0.0);
+}
+
+// Second sweep: T = V (2 eta e' + zeta tr L 1) - H, H = 1/2 sum P r of the residual pair forces P; leaves T B in the
+// stress records, sum P and the hoop force in `force`.
+template <int D>
+void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
+  using G = GradientRecord<D>;
+  using F = StressRecord<D>;
+  const auto& gradients = gradient_records<D>(w);
+  auto& records = stress_records<D>(w);
+  const std::int64_t n = p.size();
+  records.resize(w.pairs.elements(n));
+  parallel_for(n, [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double* self = gradients.at(k);
+    Pack sum[D]{}, H[D * D]{};
+    for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
+      Pack other[G::size], r[D], missed{}, turned{};
+      gather(gradients, j, other);
+      for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q];
+      for (int a = 0; a < D; ++a) {
+        Pack rest = self[G::v + a] - other[G::v + a];
+        for (int b = 0; b < D; ++b) rest -= 0.5 * (self[G::L + a * D + b] + other[G::L + a * D + b]) * r[b];
+        rest *= r[a];
+        missed += rest;
+        turned += a == D - 1 ? rest : rest * other[G::sign];
+      }
+      const Pack half_k = 0.5 * w.k[q];
+      missed *= half_k;
+      turned *= half_k;
+      for (int a = 0; a < D; ++a) {
+        const Pack P = r[a] * (a == D - 1 ? missed + turned : missed + turned * other[G::sign]);
+        sum[a] += P;
+        for (int b = 0; b < D; ++b) H[a * D + b] += P * r[b];
+      }
+    });
+    Matrix<D> L;
+    std::copy_n(self + G::L, D * D, L.begin());
     const double ir = model.axisymmetric ? inverse_radius(model, p.x[0][i]) : 0, hoop = v[0][i] * ir;
     double trace = hoop;
     for (int d = 0; d < D; ++d) trace += L[d * D + d];
@@ -159,75 +214,60 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& 
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b)
         T[a * D + b] = twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) + (a == b ? mean : 0) -
-                       left[a * D + b] + taken[a * D + b];
-    const Matrix<D> TB = product<D>(T, B);
-    if (model.axisymmetric) force[0][i] = -(twice * (hoop - trace) + mean) * ir;
+                       0.5 * lane_sum(H[a * D + b]);
+    const Matrix<D> TB = product<D>(T, matrix_at<D>(w.correction, k));
+    for (std::size_t d = 0; d < D; ++d) force[d][i] = -lane_sum(sum[d]);
+    force[0][i] -= (twice * (hoop - trace) + mean) * ir;
     double* to = records.at(k);
-    for (int d = 0; d < D; ++d) to[F::v + d] = self[d];
-    to[F::area] = self[D];
-    to[F::sign] = 1;
+    to[F::area] = w.area[i];
     std::copy(TB.begin(), TB.end(), to + F::T);
-    std::copy(L.begin(), L.end(), to + F::L);
   });
   fill_images(w.pairs, n, records, [&](std::size_t image, const double* from, double* to) {
     const auto &S = w.pairs.images.S[image], &R = w.pairs.images.R[image];
-    for (std::size_t d = 0; d < D; ++d) to[F::v + d] = S[d] * from[F::v + d];
     to[F::area] = from[F::area];
-    to[F::sign] = R[0] * S[0] * from[F::sign];  // -1 under the no-slip floor: tangential components turn round
     for (std::size_t a = 0; a < D; ++a)
-      for (std::size_t b = 0; b < D; ++b) {
-        to[F::T + a * D + b] = S[a] * R[b] * from[F::T + a * D + b];
-        to[F::L + a * D + b] = R[a] * R[b] * from[F::L + a * D + b];
-      }
+      for (std::size_t b = 0; b < D; ++b) to[F::T + a * D + b] = S[a] * R[b] * from[F::T + a * D + b];
   });
-  std::fill_n(records.at(w.pairs.elements(n) - 1), F::width, 0.0);
+  std::fill_n(records.at(w.pairs.elements(n) - 1), F::size, 0.0);
 }
 
 // sqrt(2 e:e) of the gradients the first sweep left in the records.
 template <int D>
 void read_shear_rate(Work& w, const Particles& p, const Model& model, const Field& v) {
-  const auto& records = stress_records<D>(w);
+  const auto& records = gradient_records<D>(w);
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     Matrix<D> L;
-    std::copy_n(records.at(k) + StressRecord<D>::L, D * D, L.begin());
+    std::copy_n(records.at(k) + GradientRecord<D>::L, D * D, L.begin());
     w.shear_rate[i] = shear_rate<D>(L, model.axisymmetric ? v[0][i] * inverse_radius(model, p.x[0][i]) : 0);
   });
 }
 
-// Second sweep: force of the stresses of both particles, and of what their linear fields miss.
+// Third sweep: force of the stresses of both particles.
 template <int D>
-void force_sweep(Work& w, const Particles& p, const Model& model, Field& force) {
+void force_sweep(Work& w, const Particles& p, Field& force) {
   using F = StressRecord<D>;
   const auto& records = stress_records<D>(w);
   parallel_for(p.size(), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
     const double* self = records.at(k);
     Pack sum[D]{};
     for_each_pack(w.pairs, k, [&](const std::int32_t* j, std::size_t q) {
-      Pack other[F::size], r[D], turned[D], missed{}, missed_other{};
+      Pack other[F::size];
       gather(records, j, other);
-      for (std::size_t d = 0; d < D; ++d) r[d] = w.r[d][q];
-      for (int a = 0; a < D; ++a) {
-        const Pack dv = self[F::v + a] - other[F::v + a];
-        Pack own = dv, theirs = a == D - 1 ? dv : dv * other[F::sign];
-        for (int b = 0; b < D; ++b) {
-          own -= self[F::L + a * D + b] * r[b];
-          theirs -= other[F::L + a * D + b] * r[b];
-        }
-        missed += own * r[a];
-        missed_other += theirs * r[a];
-        turned[a] = a == D - 1 ? r[a] : r[a] * other[F::sign];
-      }
-      const Pack f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f, half_k = 0.5 * w.k[q];
-      for (int a = 0; a < D; ++a) {
-        for (int b = 0; b < D; ++b) sum[a] += (aj * self[F::T + a * D + b] + ai * other[F::T + a * D + b]) * r[b];
-        sum[a] += half_k * (missed * r[a] + missed_other * turned[a]);
-      }
+      const Pack f = w.f[q], aj = other[F::area] * f, ai = self[F::area] * f;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b)
+          sum[a] += (aj * self[F::T + a * D + b] + ai * other[F::T + a * D + b]) * w.r[static_cast<std::size_t>(b)][q];
     });
-    const double hoop = model.axisymmetric ? force[0][i] : 0;
-    for (std::size_t d = 0; d < D; ++d) force[d][i] = (d == 0 ? hoop : 0) - lane_sum(sum[d]);
+    for (std::size_t d = 0; d < D; ++d) force[d][static_cast<std::size_t>(k)] -= lane_sum(sum[d]);
   });
+}
+
+template <int D>
+void viscous_sweeps(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
+  gradient_sweep<D>(w, p, v);
+  stress_sweep<D>(w, p, model, v, force);
+  force_sweep<D>(w, p, force);
 }
 
 }  // namespace
@@ -248,16 +288,16 @@ void corrected_pressure_and_coefficients(Work& w, const Particles& p, const Mode
 
 void corrected_shear_rate(Work& w, const Particles& p, const Model& model, const Field& v) {
   if (model.dim == 2)
-    stress_sweep<2>(w, p, model, v, w.force), read_shear_rate<2>(w, p, model, v);
+    gradient_sweep<2>(w, p, v), read_shear_rate<2>(w, p, model, v);
   else
-    stress_sweep<3>(w, p, model, v, w.force), read_shear_rate<3>(w, p, model, v);
+    gradient_sweep<3>(w, p, v), read_shear_rate<3>(w, p, model, v);
 }
 
 void corrected_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
   if (model.dim == 2)
-    stress_sweep<2>(w, p, model, v, force), force_sweep<2>(w, p, model, force);
+    viscous_sweeps<2>(w, p, model, v, force);
   else
-    stress_sweep<3>(w, p, model, v, force), force_sweep<3>(w, p, model, force);
+    viscous_sweeps<3>(w, p, model, v, force);
 }
 
 }  // namespace bagnold::sph

@@ -7,7 +7,7 @@ namespace bagnold::sph {
 // acceleration = gravity + pressure (+ viscosity and artificial viscosity when `viscous`, minatti2015 operator only).
 void pair_momentum_rate(Work& work, const Particles& particles, const Model& model, bool viscous);
 
-// acceleration = gravity + pressure, the adjoint of the corrected divergence; also k, quartic and preconditioner.
+// acceleration = gravity + pressure, the adjoint of the corrected divergence; also k and preconditioner.
 // Needs kinematics(corrected) at the present positions.
 void corrected_pressure_and_coefficients(Work& work, const Particles& particles, const Model& model);
 // k and preconditioner of the pair operator.

@@ -128,8 +128,8 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
       for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
       add_block<D>(block, kk, r);
     });
-    // The ghosts resist the particle alone: a fixed matrix, kept in `quartic`.
-    double* wall = w.quartic.data() + i * (D == 2 ? 5 : 15);
+    // The ghosts resist the particle alone: a fixed matrix, kept in `wall`.
+    double* wall = w.wall.data() + i * (D * (D + 1) / 2);
     std::fill_n(wall, D * (D + 1) / 2, 0.0);
     if (model.floor && p.x[D - 1][i] < 2 * model.h()) {
       std::array<double, D> x;
@@ -167,7 +167,7 @@ void viscous_sweep(Work& w, const Particles& p, const Field& v, Field& force) {
       for (std::size_t d = 0; d < D; ++d) vr += (w.slim.at(k)[d] - other[d]) * w.r[d][q];
       for (std::size_t d = 0; d < D; ++d) sum[d] += w.k[q] * vr * w.r[d][q];
     });
-    const double* wall = w.quartic.data() + i * (D == 2 ? 5 : 15);
+    const double* wall = w.wall.data() + i * (D * (D + 1) / 2);
     std::array<double, D> drag{};
     for (std::size_t a = 0, m = 0; a < D; ++a)
       for (std::size_t b = a; b < D; ++b, ++m) {

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/simd.hpp"
-
 namespace bagnold::sph {
 
 template <int D>
@@ -70,45 +68,5 @@ inline Matrix<3> inverse(const Matrix<3>& m) {
   for (double& x : r) x *= d;
   return r;
 }
-
-// Fully symmetric tensor of rank four: one number per monomial x^i y^j z^k, i + j + k = 4.
-template <int D>
-struct Quartic {
-  static constexpr int size = D == 2 ? 5 : 15;
-  // Position of the component with `y` indices 1 and `z` indices 2.
-  static constexpr int at(int y, int z) { return D == 2 ? y : z * (11 - z) / 2 + y; }
-  static constexpr int at(int a, int b, int c, int d) {
-    return at((a == 1) + (b == 1) + (c == 1) + (d == 1), (a == 2) + (b == 2) + (c == 2) + (d == 2));
-  }
-  // sum += weight r r r r
-  static void add(Pack* sum, const Pack& weight, const Pack (&r)[D]) {
-    if constexpr (D == 2) {
-      const Pack xx = r[0] * r[0], xz = r[0] * r[1], zz = r[1] * r[1], wx = weight * xx, wz = weight * zz;
-      sum[0] += wx * xx;
-      sum[1] += wx * xz;
-      sum[2] += wx * zz;
-      sum[3] += wz * xz;
-      sum[4] += wz * zz;
-    } else {
-      for (int z = 0, q = 0; z <= 4; ++z)
-        for (int y = 0; y + z <= 4; ++y, ++q) {
-          Pack monomial = weight;
-          for (int e = 0; e < z; ++e) monomial *= r[2];
-          for (int e = 0; e < y; ++e) monomial *= r[1];
-          for (int e = 0; e < 4 - y - z; ++e) monomial *= r[0];
-          sum[q] += monomial;
-        }
-    }
-  }
-  // K : L
-  static Matrix<D> contract(const double* K, const Matrix<D>& L) {
-    Matrix<D> c{};
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b)
-        for (int i = 0; i < D; ++i)
-          for (int j = 0; j < D; ++j) c[a * D + b] += K[at(a, b, i, j)] * L[i * D + j];
-    return c;
-  }
-};
 
 }  // namespace bagnold::sph

@@ -8,7 +8,7 @@ void Work::resize(std::int64_t count, int dim) {
     a->resize(n);
   correction.resize(n * d * d);
   gradient.resize(n * d * d);
-  quartic.resize(n * (dim == 2 ? 5 : 15));
+  wall.resize(n * static_cast<std::size_t>(dim * (dim + 1) / 2));
   preconditioner.resize(n * d * (d + 1) / 2);
   for (Field* field : {&imbalance, &acceleration, &force, &cg_r, &cg_z, &cg_p, &cg_q})
     for (std::size_t c = 0; c < d; ++c) (*field)[c].resize(n);

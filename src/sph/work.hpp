@@ -30,10 +30,9 @@ struct Work {
   // Per pair, as long as positions do not change: separation, f = -W'/r, k/r^2 of the residual viscosity.
   std::array<std::vector<Pack>, 3> r;
   std::vector<Pack> f, k;
-  std::vector<double> quartic;  // 1/2 sum k rrrr/r^2, the distinct components
-  Records<8> slim;
-  Records<16> wide;
-  Records<32> broad;
+  std::vector<double> wall;  // resistance of the ghosts below a particle, upper triangle (minatti2015 operator)
+  Records<8> slim, slim2;
+  Records<16> wide, wide2;
   std::int64_t applications = 0;  // of the viscous operator, in this process
   // Of the last implicit solve.
   Field cg_r, cg_z, cg_p, cg_q;

@@ -275,6 +275,7 @@ double potential(const Case& c, const Field& v) {
   };
   double sum = 0;
   std::array<double, D> r;
+  std::vector<Matrix<D>> gradients;
   for (std::size_t i = 0; i < n; ++i) {
     Matrix<D> M{}, S{};
     for (std::size_t j = 0; j < n; ++j) {
@@ -290,25 +291,28 @@ double potential(const Case& c, const Field& v) {
     Matrix<D> B = inverse(M);
     for (std::size_t k = 0; k < D * D; ++k) B[k] = weight * B[k] + (k % (D + 1) == 0 ? 1 - weight : 0);
     const Matrix<D> L = product<D>(S, B);
+    gradients.push_back(L);
     double trace = 0, ee = 0;
     for (std::size_t k = 0; k < D; ++k) trace += L[k * D + k];
     for (std::size_t k = 0; k < D; ++k)
       for (std::size_t l = 0; l < D; ++l) ee += std::pow(0.5 * (L[k * D + l] + L[l * D + k]), 2);
     const double V = p.mass[i] / p.rho[i], eta = c.work.viscosity[i];
     sum += V * (eta * (ee - trace * trace / 3) + 0.5 * c.work.bulk[i] * trace * trace);
+  }
+  for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) {
       if (i == j) continue;
-      const double other = c.work.viscosity[j], f = geometry(i, j, r);
+      const double eta = c.work.viscosity[i], other = c.work.viscosity[j], f = geometry(i, j, r);
       double missed = 0, r2 = 0;
       for (std::size_t k = 0; k < D; ++k) {
         double dv = v[k][i] - v[k][j];
-        for (std::size_t l = 0; l < D; ++l) dv -= L[k * D + l] * r[l];
+        for (std::size_t l = 0; l < D; ++l) dv -= 0.5 * (gradients[i][k * D + l] + gradients[j][k * D + l]) * r[l];
         missed += dv * r[k], r2 += r[k] * r[k];
       }
-      const double k_ij = 2.0 * (D + 2) * (2 * eta * other / (eta + other)) * V * p.mass[j] / p.rho[j] * f;
+      const double k_ij =
+          2.0 * (D + 2) * (2 * eta * other / (eta + other)) * p.mass[i] / p.rho[i] * p.mass[j] / p.rho[j] * f;
       sum += 0.25 * k_ij * missed * missed / r2;
     }
-  }
   return sum;
 }
 
