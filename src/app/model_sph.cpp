@@ -67,6 +67,7 @@ class SphModel final : public Model {
             {"kinetic_energy", "J", "sum m v^2/2 (J/m planar)"},
             {"front", "m", "reach of the connected material"},
             {"front_raw", "m", "reach of the farthest particle"},
+            {"front_layer", "m", "reach of the layer at least a grain, and half a particle, deep"},
             {"height", "m", "of the connected material"},
             {"speed_rms", "m/s", "root mean square, by mass: the creep of a deposit"},
             {"max_inertial_number", "", "largest i inside the flow so far"}};
@@ -80,7 +81,8 @@ class SphModel final : public Model {
       return {state_.time, state_.dt, energy, mean_velocity(), *std::max_element(u.begin(), u.end()), max_i_};
     }
     const sph::Front front = find_front(state_, work_, in_.model);
-    return {state_.time, state_.dt, energy, front.connected, front.raw, front.height, rms_speed(energy), max_i_};
+    return {state_.time,  state_.dt,         energy, front.connected, front.raw, front.layer,
+            front.height, rms_speed(energy), max_i_};
   }
 
   std::string progress() override {
@@ -187,7 +189,9 @@ class SphModel final : public Model {
     summary["r0"] = in_.column.radius;
     summary["r_final"] = front.connected;
     summary["r_final_raw"] = front.raw;
+    summary["r_final_layer"] = front.layer;
     summary["runout"] = front.connected / in_.column.radius - 1;
+    summary["runout_layer"] = front.layer / in_.column.radius - 1;
     summary["runout_experiment"] = scenario::measured_runout(aspect, in_.geometry);
     summary["height_final"] = front.height;
     summary["speed_rms"] = rms_speed(kinetic_energy(state_, in_.model));

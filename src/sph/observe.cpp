@@ -43,6 +43,32 @@ double max_inertial_number(const State& state, const Work& w, const Model& model
   return most;
 }
 
+namespace {
+
+double horizontal_distance(const Particles& p, std::size_t i, std::size_t up) {
+  double r2 = 0;
+  for (std::size_t d = 0; d < up; ++d) r2 += p.x[d][i] * p.x[d][i];
+  return std::sqrt(r2);
+}
+
+double layer_edge(const Particles& p, const Model& model, double reach) {
+  const bool rings = model.axisymmetric || model.dim == 3;
+  const double width = 2 * model.spacing, least = std::max(model.material.grain_diameter, 0.5 * model.spacing);
+  std::vector<double> depth(static_cast<std::size_t>(reach / width) + 2, 0.0);
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    const auto ring =
+        static_cast<std::size_t>(horizontal_distance(p, i, static_cast<std::size_t>(model.vertical())) / width);
+    const double middle = (static_cast<double>(ring) + 0.5) * width, area = (rings ? 2 * M_PI * middle : 2) * width;
+    depth[ring] += p.mass[i] / (model.phi_max() * model.grains().grain_density * area);
+  }
+  std::size_t ring = 0;
+  while (depth[ring] >= least) ++ring;  // the last one is empty
+  if (ring == 0) return 0;
+  return width * (static_cast<double>(ring) - 0.5 + (depth[ring - 1] - least) / (depth[ring - 1] - depth[ring]));
+}
+
+}  // namespace
+
 Front find_front(const State& state, const Work& w, const Model& model) {
   constexpr double link = 1.6;  // over dp
   const Particles& p = state.particles;
@@ -76,14 +102,13 @@ Front find_front(const State& state, const Work& w, const Model& model) {
       largest = root(static_cast<std::int32_t>(i));
   Front front;
   for (std::size_t i = 0; i < n; ++i) {
-    double r2 = 0;
-    for (std::size_t d = 0; d < up; ++d) r2 += p.x[d][i] * p.x[d][i];
-    const double reach = std::sqrt(r2) + 0.5 * model.spacing;
+    const double reach = horizontal_distance(p, i, up) + 0.5 * model.spacing;
     front.raw = std::max(front.raw, reach);
     if (root(static_cast<std::int32_t>(i)) != largest) continue;
     front.connected = std::max(front.connected, reach);
     front.height = std::max(front.height, p.x[up][i] + 0.5 * model.spacing);
   }
+  front.layer = layer_edge(p, model, front.raw);
   return front;
 }
 

@@ -15,6 +15,10 @@ struct Front {
   double connected = 0;  // of the largest group of particles linked over at most 1.6 dp
   double raw = 0;        // of the farthest particle
   double height = 0;     // of the connected group
+  // Edge of the continuous layer: where, going outwards, the depth (volume of grains at phi_max over area, in rings of 2 dp,
+  // both sides of a planar column together, linear in between) first falls below one grain, or below dp/2, one particle a
+  // ring, if that is more.
+  double layer = 0;
 };
 Front find_front(const State& state, const Work& work, const Model& model);
 
