@@ -28,7 +28,7 @@ struct PairShape {
     double hd = 1;
     for (int k = 0; k < D; ++k) hd *= h;
     value_scale = Kernel::norm(D) / hd;
-    slope_scale = value_scale / (h * h);
+    slope_scale = value_scale * Kernel::slope_norm / (h * h);
   }
   template <class T>
   T ratio(T r2, T inv_r) const {
@@ -43,8 +43,8 @@ struct PairShape {
     return Kernel::slope(T(slope_scale), R);
   }
   template <class T>
-  T weighted_f(T weight, T R) const {  // weight f
-    return Kernel::slope(T(slope_scale * weight), R);
+  T unscaled_f(T weight, T R) const {  // weight f / slope_scale
+    return Kernel::slope(weight, R);
   }
   template <class T>
   T w(T R) const {

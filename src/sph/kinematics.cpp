@@ -12,15 +12,16 @@ namespace {
 // B = M^-1, blended to 1 where the neighbourhood is too thin for an inverse to mean anything.
 constexpr double blend_from = 0.3, blend_to = 0.5;
 
-// Sums over the neighbours of one particle.
-template <int D>
-struct Sums {
-  double density;                       // sum m_j f (v_ij . r_ij)
-  Matrix<D> S;                          // sum A_j f v_ij r_ij, corrected
-  std::array<double, D*(D + 1) / 2> E;  // S + S^T with its diagonal halved, upper triangle, as printed
-  std::array<double, D*(D + 1) / 2> M;  // sum A_j f r r, upper triangle
-  std::array<double, D> imbalance;
-  double concentration;
+// Where the sums over the neighbours of one particle lie.
+template <int D, Kinematics what, bool moments>
+struct Slots {
+  static constexpr bool printed = what != Kinematics::corrected, gradients = what != Kinematics::density;
+  static constexpr int triangle = D * (D + 1) / 2;
+  static constexpr int density = 0;         // sum m_j f (v_ij . r_ij), printed only
+  static constexpr int gradient = printed;  // printed: S + S^T with its diagonal halved, upper triangle; else S
+  static constexpr int M = gradient + (!gradients ? 0 : printed ? triangle : D * D);  // sum A_j f r r, upper triangle
+  static constexpr int imbalance = M + triangle, concentration = imbalance + D;
+  static constexpr int size = moments ? concentration + 1 : M;
 };
 
 template <int D>
@@ -66,16 +67,16 @@ void add_square(Pack* a, const Pack& w, const Pack (&b)[D]) {
   }
 }
 
-// The sums of particles begin to end.
+// The sums of particles begin to end, those of the printed equations without the constants of the kernel.
 template <int D, class Kernel, Kinematics what, bool moments>
-void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begin, std::int64_t end, Sums<D>* sums) {
+void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begin, std::int64_t end, double* sums) {
   using F = PairRecord<D>;
-  constexpr bool printed = what != Kinematics::corrected, gradients = what != Kinematics::density;
-  constexpr int triangle = D * (D + 1) / 2;
+  using At = Slots<D, what, moments>;
   const auto& records = pair_records<D>(w);
-  for (std::int64_t i = begin; i < end; ++i, ++sums) {
+  Pack all[pair_block * At::size];
+  for (std::int64_t i = begin; i < end; ++i) {
     const double* self = records.at(i);
-    Pack density{}, S[D * D]{}, E[triangle]{}, M[triangle + D + 1]{};  // M, imbalance, concentration
+    Pack sum[At::size]{};
     for_each_pack(w.pairs, i, [&](const std::int32_t* j, std::size_t q) {
       Pack other[F::inv_rho + 1], r[D], v[D], r2 = shape.tiny, vr{};
       gather(records, j, other);
@@ -86,45 +87,40 @@ void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begi
         vr += v[d] * r[d];
       }
       const Pack R = shape.ratio(r2);
-      if constexpr (!gradients) {
-        density += shape.weighted_f(other[F::mass] * vr, R);
+      if constexpr (!At::gradients) {
+        sum[At::density] += shape.unscaled_f(other[F::mass] * vr, R);
         return;
       }
-      const Pack mf = shape.weighted_f(other[F::mass], R);
-      if constexpr (printed) {  // the kernel last: all else is ready before it
-        density += mf * vr;
-        for (int d = 0; d < D; ++d) v[d] *= other[F::inv_rho];
-        for (int a = 0, m = 0; a < D; ++a)
-          for (int b = a; b < D; ++b, ++m) E[m] += mf * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
+      Pack af;
+      if constexpr (At::printed) {  // the kernel last: all else is ready before it
+        const Pack mf = shape.unscaled_f(other[F::mass], R);
+        af = mf * other[F::inv_rho];
+        sum[At::density] += mf * vr;
+        for (int a = 0, m = At::gradient; a < D; ++a)
+          for (int b = a; b < D; ++b, ++m) sum[m] += af * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
       } else {
-        add_product<D>(S, mf, v, r);
+        const Pack f = shape.f(R);
+        af = other[F::mass] * f;
+        add_product<D>(sum + At::gradient, af, v, r);
         for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
-        w.f[q] = shape.f(R);
+        w.f[q] = f;
       }
       if constexpr (moments) {
-        const Pack area = printed ? other[F::mass] * other[F::inv_rho] : other[F::mass],
-                   af = printed ? mf * other[F::inv_rho] : mf;
-        add_square<D>(M, af, r);
-        for (int d = 0; d < D; ++d) M[triangle + d] += af * r[d];
-        M[triangle + D] += area * shape.w(R);
+        add_square<D>(sum + At::M, af, r);
+        for (int d = 0; d < D; ++d) sum[At::imbalance + d] += af * r[d];
+        const Pack area = At::printed ? other[F::mass] * other[F::inv_rho] : other[F::mass];
+        sum[At::concentration] += area * shape.w(R);
       }
     });
-    if constexpr (printed) sums->density = lane_sum(density);
-    if constexpr (gradients && printed) lane_sums(E, sums->E.data());
-    if constexpr (!printed) lane_sums(S, sums->S.data());
-    if constexpr (moments) {
-      double m[triangle + D + 1];
-      lane_sums(M, m);
-      std::copy_n(m, triangle, sums->M.data());
-      std::copy_n(m + triangle, D, sums->imbalance.data());
-      sums->concentration = m[triangle + D] + w.area[static_cast<std::size_t>(i)] * shape.w(0.0);
-    }
+    std::copy_n(sum, At::size, all + (i - begin) * At::size);
   }
+  lane_sums(all, static_cast<int>(end - begin) * At::size, sums);
 }
 
-template <int D, class Kernel>
-void add_ghosts(Sums<D>& sums, const PairShape<D, Kernel>& shape, const Model& model, const double* self) {
+template <int D, class Kernel, Kinematics what, bool moments>
+void add_ghosts(double* sums, const PairShape<D, Kernel>& shape, const Model& model, const double* self) {
   using F = PairRecord<D>;
+  using At = Slots<D, what, moments>;
   std::array<double, D> x, v;
   for (std::size_t d = 0; d < D; ++d) x[d] = self[F::x + d], v[d] = self[F::v + d];
   const double mass = self[F::mass], area = mass * self[F::inv_rho];
@@ -132,24 +128,26 @@ void add_ghosts(Sums<D>& sums, const PairShape<D, Kernel>& shape, const Model& m
     double r2 = shape.tiny, vr = 0;
     for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * v[d] * r[d];
     const double R = shape.ratio(r2), f = shape.f(R);
-    sums.density += mass * f * vr;
+    sums[At::density] += mass * f * vr;
     for (std::size_t a = 0, m = 0; a < D; ++a) {
-      sums.imbalance[a] += area * f * r[a];
+      if constexpr (moments) sums[At::imbalance + static_cast<int>(a)] += area * f * r[a];
       for (std::size_t b = a; b < D; ++b, ++m) {
-        sums.E[m] += area * f * beta * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
-        sums.M[m] += area * f * r[a] * r[b];
+        if constexpr (At::gradients)
+          sums[At::gradient + static_cast<int>(m)] +=
+              area * f * beta * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
+        if constexpr (moments) sums[At::M + static_cast<int>(m)] += area * f * r[a] * r[b];
       }
     }
-    sums.concentration += area * shape.w(R);
+    if constexpr (moments) sums[At::concentration] += area * shape.w(R);
   });
 }
 
 // sqrt(2 e:e) from S + S^T with its diagonal halved.
 template <int D>
-double shear_rate_of_sum(const std::array<double, D*(D + 1) / 2>& E) {
+double shear_rate_of_sum(const double* E) {
   double sum = 0;
-  for (std::size_t a = 0, m = 0; a < D; ++a)
-    for (std::size_t b = a; b < D; ++b, ++m) sum += (a == b ? 2 : 1) * E[m] * E[m];
+  for (int a = 0, m = 0; a < D; ++a)
+    for (int b = a; b < D; ++b, ++m) sum += (a == b ? 2 : 1) * E[m] * E[m];
   return std::sqrt(sum);
 }
 
@@ -165,18 +163,21 @@ Matrix<D> correction(const Matrix<D>& M, double coverage) {
 
 // What follows from the sums of particle i.
 template <int D, Kinematics what, bool moments>
-void store(Work& w, const Particles& p, const Model& model, std::size_t i, const Sums<D>& s) {
-  if constexpr (what != Kinematics::corrected) w.density_rate[i] = -s.density;
+void store(Work& w, const Particles& p, const Model& model, std::size_t i, const double* sums) {
+  using At = Slots<D, what, moments>;
+  if constexpr (At::printed) w.density_rate[i] = -sums[At::density];
   const double hoop = model.axisymmetric ? p.v[0][i] * inverse_radius(model, p.x[0][i]) : 0;
   if constexpr (moments) {
-    const Matrix<D> M = from_upper<D>(s.M.data());
+    const Matrix<D> M = from_upper<D>(sums + At::M);
     w.coverage[i] = smallest_eigenvalue(M);
-    w.concentration[i] = s.concentration;
-    for (std::size_t d = 0; d < D; ++d) w.imbalance[d][i] = s.imbalance[d];
+    w.concentration[i] = sums[At::concentration];
+    for (std::size_t d = 0; d < D; ++d) w.imbalance[d][i] = sums[At::imbalance + static_cast<int>(d)];
     const Matrix<D> B = correction<D>(M, w.coverage[i]);
     std::copy(B.begin(), B.end(), w.correction.begin() + static_cast<std::ptrdiff_t>(i * D * D));
-    if constexpr (what == Kinematics::corrected) {
-      const Matrix<D> L = product<D>(s.S, B);
+    if constexpr (!At::printed) {
+      Matrix<D> S;
+      std::copy_n(sums + At::gradient, D * D, S.begin());
+      const Matrix<D> L = product<D>(S, B);
       double divergence = hoop;
       for (int d = 0; d < D; ++d) divergence += L[d * D + d];
       w.density_rate[i] = -p.rho[i] * divergence;
@@ -184,22 +185,28 @@ void store(Work& w, const Particles& p, const Model& model, std::size_t i, const
       w.shear_rate[i] = shear_rate<D>(L, hoop);
     }
   }
-  if constexpr (what == Kinematics::pairs) w.shear_rate[i] = shear_rate_of_sum<D>(s.E);
+  if constexpr (At::printed && At::gradients) w.shear_rate[i] = shear_rate_of_sum<D>(sums + At::gradient);
 }
 
 template <int D, class Kernel, Kinematics what, bool moments>
 void sweep(Work& w, const Particles& p, const Model& model) {
-  constexpr std::int64_t block = 128;
+  using At = Slots<D, what, moments>;
   const PairShape<D, Kernel> shape(model.h());
   const bool ghosts = model.floor && !model.corrected();
-  parallel_blocks(p.size(), block, [&](std::int64_t begin, std::int64_t end) {
-    std::array<Sums<D>, block> sums;
-    sum_neighbours<D, Kernel, what, moments>(w, shape, begin, end, sums.data());
+  parallel_blocks(p.size(), pair_block, [&](std::int64_t begin, std::int64_t end) {
+    std::array<double, pair_block * At::size> all;
+    sum_neighbours<D, Kernel, what, moments>(w, shape, begin, end, all.data());
     for (std::int64_t k = begin; k < end; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      Sums<D>& s = sums[static_cast<std::size_t>(k - begin)];
-      if (ghosts && p.x[D - 1][i] < 2 * model.h()) add_ghosts(s, shape, model, pair_records<D>(w).at(k));
-      store<D, what, moments>(w, p, model, i, s);
+      double* sums = all.data() + (k - begin) * At::size;
+      if constexpr (At::printed) {
+        constexpr int scaled = moments ? At::concentration : At::size;
+        for (int m = 0; m < scaled; ++m) sums[m] *= shape.slope_scale;
+        if (ghosts && p.x[D - 1][i] < 2 * model.h())
+          add_ghosts<D, Kernel, what, moments>(sums, shape, model, pair_records<D>(w).at(k));
+      }
+      if constexpr (moments) sums[At::concentration] += w.area[i] * shape.w(0.0);
+      store<D, what, moments>(w, p, model, i, sums);
     }
   });
 }

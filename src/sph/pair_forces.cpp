@@ -45,13 +45,14 @@ T strength(const T& vr, const double* a, const T* b, double coefficient, double 
   return s;
 }
 
-// Sums over the neighbours of particles begin to end.
+// Sums over the neighbours of particles begin to end, without the constants of the kernel.
 template <int D, class Kernel, class Mean, bool viscous, bool artificial>
 void sum_rates(Work& w, const PairShape<D, Kernel> shape, double coefficient, double alpha_h_c, std::int64_t begin,
-               std::int64_t end, std::array<double, D>* sums) {
+               std::int64_t end, double* sums) {
   using F = PairRecord<D>;
   const auto& records = pair_records<D>(w);
-  for (std::int64_t i = begin; i < end; ++i, ++sums) {
+  Pack all[pair_block * D];
+  for (std::int64_t i = begin; i < end; ++i) {
     const double* self = records.at(i);
     Pack sum[D]{};
     for_each_pack(w.pairs, i, [&](const std::int32_t* j, std::size_t) {
@@ -62,28 +63,29 @@ void sum_rates(Work& w, const PairShape<D, Kernel> shape, double coefficient, do
         r2 += r[d] * r[d];
         vr += (self[F::v + d] - other[F::v + d]) * r[d];
       }
-      const Pack inv_r = rsqrt(r2), mf = shape.weighted_f(other[F::mass], shape.ratio(r2, inv_r));
+      const Pack inv_r = rsqrt(r2), mf = shape.unscaled_f(other[F::mass], shape.ratio(r2, inv_r));
       const Pack s =
           mf * strength<D, Mean, viscous, artificial>(Pack(vr * (inv_r * inv_r)), self, other, coefficient, alpha_h_c);
       for (int d = 0; d < D; ++d) sum[d] += s * r[d];
     });
-    lane_sums(sum, sums->data());
+    std::copy_n(sum, D, all + (i - begin) * D);
   }
+  lane_sums(all, static_cast<int>(end - begin) * D, sums);
 }
 
 template <int D, class Kernel, class Mean, bool viscous, bool artificial>
 void rate_sweep(Work& w, const Particles& p, const Model& model) {
   using F = PairRecord<D>;
-  constexpr std::int64_t block = 128;
   const PairShape<D, Kernel> shape(model.h());
   const double coefficient = laws::viscous::Cleary::coefficient(D),
                alpha_h_c = model.numerics.artificial_viscosity * model.h() * model.sound_speed();
-  parallel_blocks(p.size(), block, [&](std::int64_t begin, std::int64_t end) {
-    std::array<std::array<double, D>, block> sums;
+  parallel_blocks(p.size(), pair_block, [&](std::int64_t begin, std::int64_t end) {
+    std::array<double, pair_block * D> sums;
     sum_rates<D, Kernel, Mean, viscous, artificial>(w, shape, coefficient, alpha_h_c, begin, end, sums.data());
     for (std::int64_t k = begin; k < end; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      auto& a = sums[static_cast<std::size_t>(k - begin)];
+      double* a = sums.data() + (k - begin) * D;
+      for (int d = 0; d < D; ++d) a[d] *= shape.slope_scale;
       const double* self = pair_records<D>(w).at(k);
       std::array<double, D> x, v;
       for (std::size_t d = 0; d < D; ++d) x[d] = self[F::x + d], v[d] = self[F::v + d];
@@ -91,7 +93,7 @@ void rate_sweep(Work& w, const Particles& p, const Model& model) {
         for_each_ghost<D>(model, x, [&](const std::array<double, D>& r, double beta) {
           double r2 = shape.tiny, vr = 0;
           for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * v[d] * r[d];
-          const double mf = shape.weighted_f(self[F::mass], shape.ratio(r2));
+          const double mf = self[F::mass] * shape.f(shape.ratio(r2));
           const double s = mf * strength<D, Mean, viscous, artificial>(vr / r2, self, self, coefficient, alpha_h_c);
           for (std::size_t d = 0; d < D; ++d) a[d] += s * r[d];
         });

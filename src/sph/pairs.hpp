@@ -9,6 +9,8 @@ namespace bagnold::sph {
 
 // Neighbours of particle i: index[offset[i] .. offset[i + 1]), a multiple of eight of them. j < n is a particle, n <= j <
 // n + images an image, and the last number is a dummy that interacts with nobody and fills the packs.
+inline constexpr std::int64_t pair_block = 32;  // particles a sweep takes at a time
+
 struct Pairs {
   std::vector<std::int64_t> offset;
   std::vector<std::int32_t> index;

@@ -34,7 +34,7 @@ inline Register halves(const double* a, const double* b) {
 
 }  // namespace detail
 
-// out[f] = field f of the eight neighbours j. Four fields at a time: half as many shuffles as an 8 x 8 transposition, and
+// out[f] = field f of the eight neighbours j, in the order 0 1 4 5 2 3 6 7. Four fields at a time: half as many shuffles as an 8 x 8 transposition, and
 // the compiler drops those of fields nobody reads.
 template <int Fields, int Width>
 inline void gather(const Records<Width>& records, const std::int32_t* j, Pack (&out)[Fields]) {
@@ -45,10 +45,10 @@ inline void gather(const Records<Width>& records, const std::int32_t* j, Pack (&
     for (int k = 0; k < 4; ++k) row[k] = detail::halves(records.at(j[k]) + first, records.at(j[k + 4]) + first);
     const Register even01 = bagnold::detail::evens(row[0], row[1]), even23 = bagnold::detail::evens(row[2], row[3]),
                    odd01 = bagnold::detail::odds(row[0], row[1]), odd23 = bagnold::detail::odds(row[2], row[3]);
-    out[first].v = bagnold::detail::even_pairs(even01, even23);
-    if (first + 1 < Fields) out[first + 1].v = bagnold::detail::even_pairs(odd01, odd23);
-    if (first + 2 < Fields) out[first + 2].v = bagnold::detail::odd_pairs(even01, even23);
-    if (first + 3 < Fields) out[first + 3].v = bagnold::detail::odd_pairs(odd01, odd23);
+    out[first].v = bagnold::detail::even_pairs_of_each(even01, even23);
+    if (first + 1 < Fields) out[first + 1].v = bagnold::detail::even_pairs_of_each(odd01, odd23);
+    if (first + 2 < Fields) out[first + 2].v = bagnold::detail::odd_pairs_of_each(even01, even23);
+    if (first + 3 < Fields) out[first + 3].v = bagnold::detail::odd_pairs_of_each(odd01, odd23);
   }
 }
 

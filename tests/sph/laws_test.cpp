@@ -26,7 +26,7 @@ TEST(Kernel, IntegratesToOneAndSlopeIsItsDerivative) {
       EXPECT_NEAR(integral, 1, 1e-6) << K::name;
     }
     for (double R = 0.05; R < 2.2; R += 0.1)
-      EXPECT_NEAR(K::slope(1.0, R) * R, -(K::value(R + 1e-6) - K::value(R - 1e-6)) / 2e-6, 1e-6) << K::name;
+      EXPECT_NEAR(K::slope(K::slope_norm, R) * R, -(K::value(R + 1e-6) - K::value(R - 1e-6)) / 2e-6, 1e-6) << K::name;
   });
 }
 

@@ -15,7 +15,8 @@ struct WendlandC2 {
   static constexpr std::string_view source = "Wendland 1995; Minatti & Paris 2015, eq. 20";
   static constexpr auto fields() { return std::tuple<>{}; }
   static double norm(int dimensions) { return dimensions == 2 ? 7 / (64 * M_PI) : 21 / (256 * M_PI); }
-  // W h^D / norm and -(dW/dR)/R h^D / norm, the latter times a weight (in a short chain of products); zero beyond R = 2.
+  // W h^D / norm, and -(dW/dR)/R h^D / (norm slope_norm) times a weight, in a short chain of products; zero beyond R = 2.
+  static constexpr double slope_norm = 10;
   template <class T>
   static T value(T R) {
     const T t = max(T(2 - R), T(0)), t2 = t * t;
@@ -24,7 +25,7 @@ struct WendlandC2 {
   template <class T>
   static T slope(T weight, T R) {
     const T t = max(T(2 - R), T(0));
-    return (t * t) * (t * (10 * weight));
+    return (t * t) * (t * weight);
   }
 };
 

@@ -15,6 +15,7 @@ struct WendlandC4 {
   static constexpr std::string_view source = "Wendland 1995; Dehnen & Aly 2012, table 1";
   static constexpr auto fields() { return std::tuple<>{}; }
   static double norm(int dimensions) { return dimensions == 2 ? 9 / (4 * M_PI) : 495 / (256 * M_PI); }
+  static constexpr double slope_norm = 7.0 / 6;
   template <class T>
   static T value(T R) {
     const T t = max(T(1 - 0.5 * R), T(0)), t2 = t * t;
@@ -23,7 +24,7 @@ struct WendlandC4 {
   template <class T>
   static T slope(T weight, T R) {  // dW/dR = -(7/6) a (1 - R/2)^5 R (10 R + 4)
     const T t = max(T(1 - 0.5 * R), T(0)), t2 = t * t;
-    return (t2 * t2) * (t * ((7.0 / 6 * weight) * (10 * R + 4)));
+    return (t2 * t2) * (t * (weight * (10 * R + 4)));
   }
 };
 
