@@ -25,6 +25,20 @@ TEST(Cases, InclineTomlApproachesItsSteadyProfile) {
   EXPECT_LT(u / exact, 1.05);
 }
 
+// The one-dimensional momentum equation for 0.03 m changes by less than 1e-3 a second after 2.6 s.
+TEST(Cases, SteadyTimeIsWhenTheMeanVelocityStopsChanging) {
+  const std::string thin = "--set scenario.height=0.03 --set scenario.length=0.03 ";
+  EXPECT_NEAR(run_continuum("incline.toml", thin + "--set time.end=3.5")["steady_time"], 2.75, 0.5);
+  EXPECT_TRUE(run_continuum("incline.toml", thin + "--set time.end=1")["steady_time"].is_null());
+}
+
+TEST(Cases, HeapAtRestTomlHolds) {
+  const auto summary = run_continuum("heap-at-rest.toml", "--set scenario.spacing=0.004 --set time.end=0.2");
+  const double speed = summary["speed_rms"];
+  EXPECT_LT(speed, 1e-3 * 0.32e-3 / std::sqrt(0.04 / 9.81));
+  EXPECT_GT(speed, 0);
+}
+
 TEST(Cases, ContinuumFieldsOnAGridLieBesideTheParticles) {
   const Scratch scratch;
   const Outcome outcome = bagnold(scratch, "run '" + case_file("column-3.toml") +

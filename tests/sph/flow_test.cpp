@@ -9,33 +9,6 @@
 namespace bagnold::sph::test {
 namespace {
 
-struct Simulation {
-  Model model;
-  State state;
-  Work work;
-};
-
-Simulation start(const scenario::InclinedPlane& plane, Model model) {
-  Simulation r{std::move(model), {}, {}};
-  set_geometry(plane, r.model);
-  r.state.particles = make_particles(plane, r.model);
-  initialise(r.state, r.work, r.model);
-  return r;
-}
-Simulation start(const scenario::ContinuumColumn& column, scenario::ColumnGeometry geometry, Model model) {
-  Simulation r{std::move(model), {}, {}};
-  set_geometry(column, geometry, r.model);
-  r.state.particles = make_particles(column, geometry, r.model);
-  initialise(r.state, r.work, r.model);
-  return r;
-}
-void advance(Simulation& r, double until) {
-  while (r.state.time < until) step(r.state, r.work, r.model);
-}
-void steps(Simulation& r, int count) {
-  for (int k = 0; k < count; ++k) step(r.state, r.work, r.model);
-}
-
 std::vector<double> all_numbers(State& s) {
   std::vector<double> numbers;
   for (const NamedArray& a : named_arrays(s))
@@ -54,13 +27,6 @@ bool same_bits(State& a, State& b) {
   const auto x = all_numbers(a), y = all_numbers(b);
   return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
 }
-
-Model improved(Model m) {
-  improve(m);
-  return m;
-}
-const scenario::InclinedPlane small_plane{.angle_deg = 25, .height = 0.05, .length = 0.05, .spacing = 5e-3};
-const scenario::ContinuumColumn small_column{.radius = 0.03, .height = 0.03, .spacing = 3e-3};
 
 // Sound keeps swinging through the tank (up to a tenth of the pressure), so pressures are averaged over a while.
 TEST(Rest, TankBelowTheFrictionAngleHoldsHydrostaticPressure) {
@@ -94,7 +60,7 @@ TEST(Rest, HeapBelowTheFrictionAngleHolds) {
   for (const bool stiff : {false, true}) {
     Model m = improved(Model{});
     m.material.eos = laws::eos::CompressibleGrains{2600, 7.5e-6};
-    m.material.regularisation = laws::regularisation::Minatti2015{795, stiff ? 1e5 : 1.2};
+    m.material.regularisation = laws::regularisation::Minatti2015{795, stiff ? 1e4 : 1.2};
     m.numerics.viscosity_rounds = 4;
     m.numerics.cg_tolerance = 1e-4;
     Simulation r =

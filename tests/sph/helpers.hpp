@@ -40,6 +40,11 @@ inline void improve(Model& m) {
   m.numerics.cg_tolerance = 1e-3;
 }
 
+inline Model improved(Model m) {
+  improve(m);
+  return m;
+}
+
 // A block of `count`^dim particles of unit spacing turned by `angle`, moved at random by up to `disorder`.
 inline State block(const Model& model, int count, double angle, double disorder, double rho = 1600) {
   const int dim = model.dim, n = dim == 2 ? count * count : count * count * count;
@@ -69,5 +74,35 @@ inline Model incline_model() {
   m.material.regularisation = laws::regularisation::Minatti2015{190, 1};
   return m;
 }
+
+struct Simulation {
+  Model model;
+  State state;
+  Work work;
+};
+
+inline Simulation start(const scenario::InclinedPlane& plane, Model model) {
+  Simulation r{std::move(model), {}, {}};
+  set_geometry(plane, r.model);
+  r.state.particles = make_particles(plane, r.model);
+  initialise(r.state, r.work, r.model);
+  return r;
+}
+inline Simulation start(const scenario::ContinuumColumn& column, scenario::ColumnGeometry geometry, Model model) {
+  Simulation r{std::move(model), {}, {}};
+  set_geometry(column, geometry, r.model);
+  r.state.particles = make_particles(column, geometry, r.model);
+  initialise(r.state, r.work, r.model);
+  return r;
+}
+inline void advance(Simulation& r, double until) {
+  while (r.state.time < until) step(r.state, r.work, r.model);
+}
+inline void steps(Simulation& r, int count) {
+  for (int k = 0; k < count; ++k) step(r.state, r.work, r.model);
+}
+
+inline const scenario::InclinedPlane small_plane{.angle_deg = 25, .height = 0.05, .length = 0.05, .spacing = 5e-3};
+inline const scenario::ContinuumColumn small_column{.radius = 0.03, .height = 0.03, .spacing = 3e-3};
 
 }  // namespace bagnold::sph::test

@@ -43,6 +43,36 @@ TEST(Rheology, StartsAtStaticFrictionAndRises) {
   EXPECT_NEAR(rheology::MuICollisional{}.mu(1e-3), rheology::MuI{}.mu(1e-3), 1e-7);
 }
 
+// The collisional branch leaves the dense law alone where that is known, up to i = 0.3, and takes over beyond.
+TEST(Rheology, CollisionalBranchJoinsTheDenseLaw) {
+  const rheology::MuI dense;
+  const rheology::MuICollisional both;
+  const auto excess = both.excess();
+  for (double i = 1e-4; i <= 0.3; i *= 1.2) EXPECT_NEAR(both.mu(i) / dense.mu(i), 1, 3e-3) << i;
+  for (double i = 0.29; i < 0.31; i += 1e-3)  // no corner at 0.3
+    EXPECT_NEAR(both.mu(i + 1e-3) - 2 * both.mu(i) + both.mu(i - 1e-3), 0, 1e-6);
+  EXPECT_NEAR((both.mu(2e6) - both.mu(1e6)) / 1e6, both.mu_inf, 1e-6);
+  EXPECT_NEAR(excess(0.0), dense.excess()(0.0), 1e-15);
+  const rheology::MuICollisional none{.mu_inf = 0};
+  for (double i = 1e-4; i < 1e3; i *= 2) EXPECT_DOUBLE_EQ(none.mu(i), dense.mu(i));
+}
+
+TEST(Dilatancy, CollisionalBranchJoinsTheDenseLawAndStaysPositive) {
+  const dilatancy::Linear dense;
+  const dilatancy::Rational both;
+  double last = both.phi(0);
+  EXPECT_DOUBLE_EQ(last, dense.phi(0));
+  for (double i = 1e-4; i < 1e4; i *= 1.2) {
+    EXPECT_LT(both.phi(i), last);
+    EXPECT_GT(both.phi(i), 0);
+    if (i <= 0.3) EXPECT_NEAR(both.phi(i) / dense.phi(i), 1, 3e-3) << i;
+    last = both.phi(i);
+  }
+  // dilute and hard: Bagnold's p ~ (rho d gamma)^2
+  const auto p = [&](double r, double shear) { return std::pow(eos::largest_root(both.cubic(r, shear), 0.1), 2); };
+  EXPECT_NEAR(p(0.5, 2e-4) / p(0.5, 1e-4), 4, 1e-3);
+}
+
 // rho* = phi(i) rho_s*, i = shear/y: what the cubic was derived from.
 TEST(Cubic, RootSatisfiesTheLawsItCameFrom) {
   Dilatancies::for_each([](const auto& law) {
