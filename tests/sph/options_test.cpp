@@ -133,7 +133,8 @@ TEST(Options, BulkViscosityAloneRemovesTheSoundOfFineParticles) {
   const auto noise = [](double dilatant) {
     Model m = improved(incline_model());
     m.viscous = laws::viscous::Variational{.dilatant = dilatant};
-    Simulation r = start(scenario::InclinedPlane{.angle_deg = 25, .height = 0.1, .length = 0.025, .spacing = 2.5e-3}, m);
+    Simulation r =
+        start(scenario::InclinedPlane{.angle_deg = 25, .height = 0.1, .length = 0.025, .spacing = 2.5e-3}, m);
     advance(r, 0.25);
     double across = 0;
     for (const double v : r.state.particles.v[1]) across += v * v;
@@ -185,13 +186,14 @@ TEST(Options, ViscosityRoundsAloneLetStiffMaterialYield) {
 // A slice in r and z and the whole cylinder are the same flow.
 TEST(Options, AxisymmetricAndThreeDimensionalColumnsAgree) {
   const auto result = [](scenario::ColumnGeometry geometry) {
-    Simulation r = start(scenario::ContinuumColumn{.radius = 0.03, .height = 0.03, .spacing = 5e-3}, geometry,
-                         improved(Model{}));
+    Simulation r =
+        start(scenario::ContinuumColumn{.radius = 0.03, .height = 0.03, .spacing = 5e-3}, geometry, improved(Model{}));
     advance(r, 0.07);
     refresh(r.state, r.work, r.model);
     return find_front(r.state, r.work, r.model);
   };
-  const Front slice = result(scenario::ColumnGeometry::axisymmetric), whole = result(scenario::ColumnGeometry::cylinder);
+  const Front slice = result(scenario::ColumnGeometry::axisymmetric),
+              whole = result(scenario::ColumnGeometry::cylinder);
   EXPECT_NEAR(whole.height / slice.height, 1, 0.02);
   EXPECT_NEAR(whole.connected, slice.connected, 5e-3);  // one spacing
   EXPECT_GT(slice.connected, 1.2 * 0.03);

@@ -15,14 +15,14 @@ options() {
   case $1 in
     improved-1s | improved-3s | improved-6.5s) local t=${1#*-}; echo "--set time.end=${t%s}" ;;
     improved-steady) echo "--set time.end=20" ;;
-    rows-*) awk -v n="${1#*-}" 'BEGIN { dp = 0.1/n; print "--set time.end=3 --set scenario.spacing=" dp " --set scenario.length=" (n > 20 ? 20*dp : 0.1) }' ;;
+    rows-* | steady-*) awk -v run="$1" 'BEGIN { split(run, a, "-"); n = a[2]; dp = 0.1/n; print "--set time.end=" (a[1] == "rows" ? 3 : 20) " --set scenario.spacing=" dp " --set scenario.length=" (n > 20 ? 20*dp : 0.1) }' ;;
     literal-alpha0) echo "--set time.end=9 $literal" ;;
     literal-alpha0.05) echo "--set time.end=9 $literal --set numerics.artificial_viscosity=0.05" ;;
     *) echo "unknown run $1" >&2; return 1 ;;
   esac
 }
 runs=("$@")
-[ ${#runs[@]} = 0 ] && runs=(improved-1s improved-3s improved-6.5s improved-steady rows-10 rows-20 rows-40 rows-80 literal-alpha0 literal-alpha0.05)
+[ ${#runs[@]} = 0 ] && runs=(improved-1s improved-3s improved-6.5s improved-steady rows-10 rows-20 rows-40 rows-80 steady-10 steady-20 steady-40 literal-alpha0 literal-alpha0.05)
 for run in "${runs[@]}"; do
   grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
   # shellcheck disable=SC2046
