@@ -60,7 +60,7 @@ front() {
     }' "$1/series.csv"
 }
 {
-  echo "row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop_s,front_speed_end,runout_connected,runout_raw,height_m,runout_experiment,error_percent,raw_error_percent,git_hash"
+  echo "row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop_s,front_speed_end,runout_connected,runout_layer,runout_raw,height_m,runout_experiment,error_percent,layer_error_percent,raw_error_percent,git_hash"
   for directory in "$scratch"/*-*-[1-6]; do
     s=$directory/summary.json
     [ -f "$s" ] || continue
@@ -68,11 +68,12 @@ front() {
     rest=${name%-*}
     awk -v OFS=, -v row="${name##*-}" -v geometry="${rest##*-}" -v formulation="${rest%%-*}" -v a="$(value "$s" aspect_ratio)" \
       -v dp="$(key "$directory/case.toml" spacing)" -v n="$(value "$s" particles)" -v t="$(value "$s" time)" -v front="$(front "$directory")" \
-      -v r0="$(value "$s" r0)" -v runout="$(value "$s" runout)" -v raw="$(value "$s" r_final_raw)" -v h="$(value "$s" height_final)" \
+      -v r0="$(value "$s" r0)" -v runout="$(value "$s" runout)" -v raw="$(value "$s" r_final_raw)" -v layer="$(value "$s" runout_layer)" -v h="$(value "$s" height_final)" \
       -v target="$(value "$s" runout_experiment)" -v hash="$(value "$s" git_hash | tr -d '"')" 'BEGIN {
         raw = raw/r0 - 1
-        print row, geometry, formulation, sprintf("%.3f", a), dp, n, sprintf("%.3f", t), front, sprintf("%.4f", runout), sprintf("%.4f", raw),
-              sprintf("%.4f", h), sprintf("%.3f", target), sprintf("%+.1f", 100*(runout/target - 1)), sprintf("%+.1f", 100*(raw/target - 1)), hash }'
+        print row, geometry, formulation, sprintf("%.3f", a), dp, n, sprintf("%.3f", t), front, sprintf("%.4f", runout), sprintf("%.4f", layer), sprintf("%.4f", raw),
+              sprintf("%.4f", h), sprintf("%.3f", target), sprintf("%+.1f", 100*(runout/target - 1)), sprintf("%+.1f", 100*(layer/target - 1)),
+              sprintf("%+.1f", 100*(raw/target - 1)), hash }'
   done | sort -t, -k3,3 -k2,2 -k1,1n
 } > "$here/results.csv"
 cat "$here/results.csv"
