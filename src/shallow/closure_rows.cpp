@@ -6,49 +6,6 @@
 namespace bagnold::shallow {
 namespace {
 
-// h from rho(h, u) h = D by the secant method on rho h - D. |d ln rho/d ln h| < 0.2 for every closure in use, so that
-// three steps after the first leave a relative error below 1e-11 (see the twin in tests/).
-constexpr int density_iterations = 3;
-
-// Friction, density, stress ratio and shape factor of `n` cells that hold D > 0 and run at speeds s = F sqrt(h). One loop
-// an iteration: the chain of operations on one pack is long, but that on the next is independent of it. The last step is
-// so short that friction follows it along the secant.
-template <class Law>
-void measure(const PreparedClosure& p, int n, const Row& D, const Row& s, CellRow& row) {
-  const typename Law::Prepared& law = prepared_law<Law>(p).dynamic;
-  alignas(64) Row h_before, e_before, mu_before;
-  const auto mu_at = [&](const Pack& h, int k) { return law.mu(h, Pack::load(s + k) * rsqrt(h)); };
-  const auto excess = [&](const Pack& h, const Pack& mu, int k) { return p.rho_of_mu(mu) * h - Pack::load(D + k); };
-  for (int k = 0; k < n; k += Pack::lanes) {
-    const Pack h = Pack::load(D + k) * (1 / p.typical_rho), mu = mu_at(h, k), e = excess(h, mu, k);
-    h.store(h_before + k);
-    e.store(e_before + k);
-    mu.store(mu_before + k);
-    (h - e * (1 / p.typical_rho)).store(row.h + k);
-  }
-  const auto iterate = [&](int k, auto&& then) __attribute__((always_inline)) {
-    const Pack h = Pack::load(row.h + k), mu = mu_at(h, k), e = excess(h, mu, k), change = e - Pack::load(e_before + k);
-    const Pack part = e * change / (change * change + 1e-200);  // of the last step; 0 once converged
-    const Pack h_new = h - part * (h - Pack::load(h_before + k)), mu_new = mu - part * (mu - Pack::load(mu_before + k));
-    then(h, e, mu, h_new, mu_new);
-    h_new.store(row.h + k);
-  };
-  for (int iteration = 1; iteration < density_iterations; ++iteration)
-    for (int k = 0; k < n; k += Pack::lanes)
-      iterate(k, [&](const Pack& h, const Pack& e, const Pack& mu, const Pack&, const Pack&) {
-        h.store(h_before + k);
-        e.store(e_before + k);
-        mu.store(mu_before + k);
-      });
-  for (int k = 0; k < n; k += Pack::lanes)
-    iterate(k, [&](const Pack&, const Pack&, const Pack&, const Pack& h, const Pack& mu) {
-      (Pack::load(D + k) / h).store(row.rho + k);
-      p.K_of_mu(mu).store(row.K + k);
-      if (p.alpha_varies)
-        p.strain.prepared_factor(h, max(min(mu, p.mu_hi), p.mu_lo), p.strain_mu1, p.strain_mu2).store(row.alpha + k);
-    });
-}
-
 template <class Law, bool constant, bool terrain>
 void closure_row(const PreparedClosure& p, int n, const double* D_row, const double* Mx, const double* My,
                  CellRow& row) {
@@ -92,10 +49,9 @@ void closure_row(const PreparedClosure& p, int n, const double* D_row, const dou
     }
   }
   if constexpr (!constant) {
-    measure<Law>(p, n, safe, ratio, row);
+    p.measure(p, n, safe, ratio, row);
     for (int k = 0; k < n; k += Pack::lanes)
-      settle(k, select(Pack::load_unaligned(D_row + k) > dry, Pack::load(row.h + k), 0.0),
-             p.alpha_varies ? Pack::load(row.alpha + k) : p.alpha);
+      settle(k, select(Pack::load_unaligned(D_row + k) > dry, Pack::load(row.h + k), 0.0), Pack::load(row.alpha + k));
   }
 }
 

@@ -48,6 +48,7 @@ Polynomial Polynomial::fit(double lo, double hi, const std::function<double(doub
 PreparedClosure prepare(const Definition& setup) {
   PreparedClosure p;
   p.set = setup.closure;
+  p.measure = choose_measure(p.set);
   p.g = setup.gravity.g;
   p.friction = std::visit(
       [&](const auto& law) -> AnyFriction { return laws::BasalFriction(law.prepared(p.g), p.set.static_branch); },

@@ -35,6 +35,12 @@ struct PreparedLaws<Registry<Laws...>> {
 };
 using AnyFriction = PreparedLaws<laws::FrictionLaws>::Any;
 
+struct CellRow;
+struct PreparedClosure;
+// Closures of `n` cells that hold D > 0 and run at speeds s = F sqrt(h). All rows reach two packs beyond n.
+using MeasureKernel = void (*)(const PreparedClosure&, int n, const double* D, const double* s, CellRow&);
+MeasureKernel choose_measure(const closure::ClosureSet& set);
+
 struct PreparedClosure {
   closure::ClosureSet set;
   AnyFriction friction = laws::BasalFriction(laws::Coulomb{}.prepared(1), laws::StaticBranch{});
@@ -49,6 +55,7 @@ struct PreparedClosure {
   bool alpha_varies = false;
   laws::StrainModelShapeFactor strain;
   double strain_mu1 = 0, strain_mu2 = 0;
+  MeasureKernel measure = nullptr;
 };
 
 template <class Law>
