@@ -128,70 +128,91 @@ Mask locked_faces(const FaceArgs& a, int f, const Pack& K, const Metric& metric)
 
 }  // namespace
 
-template <Geometry G>
-void face_row(const FaceArgs& a, FaceRow& out) {
+namespace {
+
+struct Fluxes {
+  Pack mass, tangential, before, after, speed, locked;
+};
+
+template <Geometry G, bool may_lock>
+[[gnu::always_inline]] inline Fluxes fluxes_at(const FaceArgs& a, int f) {
   const CellRow &B = *a.before, &A = *a.after;
   const SlopeRow &SB = *a.slope_before, &SA = *a.slope_after;
-  const bool may_lock = B.any_rest || A.any_rest;
   const double g = a.normal_g;
-  for (int f = 0; f < a.end; f += Pack::lanes) {
-    const auto b = [&](const Row& row) { return Pack::load_unaligned(row + f); };
-    const auto c = [&](const Row& row) { return Pack::load_unaligned(row + f + a.shift); };
-    const Pack K = 0.5 * (b(B.K) + c(A.K));
-    Pack gK = g * K;
-    Metric metric;
-    if constexpr (G == Geometry::terrain) {
-      const Pack cB = b(B.c), cA = c(A.c), nB = b(a.along_y ? B.by : B.bx), nA = c(a.along_y ? A.by : A.bx);
-      metric.c = 0.5 * (cB + cA);
-      metric.before = 1.0 - nB * nB * cB * cB;
-      metric.after = 1.0 - nA * nA * cA * cA;
-      metric.at_face = 0.5 * (metric.before + metric.after);
-      gK = gK * metric.at_face * metric.c;
-    }
-    const laws::ShallowFace<Pack> face{0.5 * (b(B.rho) + c(A.rho)), 0.5 * (b(B.alpha) + c(A.alpha)), gK,
-                                       max(b(B.slope), c(A.slope))};
-    const Pack uB = b(B.u) + b(SB.u), vB = b(B.v) + b(SB.v), uA = c(A.u) - c(SA.u), vA = c(A.v) - c(SA.v);
-    laws::ShallowSide<Pack> left{b(B.h) + b(SB.h), a.along_y ? vB : uB, a.along_y ? uB : vB},
-        right{c(A.h) - c(SA.h), a.along_y ? vA : uA, a.along_y ? uA : vA};
-    Pack extra_left = 0.0, extra_right = 0.0;
-    if constexpr (G != Geometry::flat) {
-      const Pack b_plus = b(B.b) + b(SB.b), b_minus = c(A.b) - c(SA.b), Kc = K * metric.c, inv = 1.0 / Kc;
-      const Pack psi_l = Kc * left.h, psi_r = Kc * right.h, eta_l = psi_l + b_plus, eta_r = psi_r + b_minus;
-      const Pack low = min(max(b_plus, b_minus), min(eta_l, eta_r));
-      const Pack push_l = max(0.0, min(eta_l - low, psi_l)), push_r = max(0.0, min(eta_r - low, psi_r));
-      // A layer that runs fast enough climbs the step, however thin it is: towards a bed continuous at the face.
-      const Pack climb = g * abs(b_plus - b_minus) + 1e-200, head = max(left.un * left.un, right.un * right.un);
-      const Pack fast = min(max(head / climb - 1.0, 0.0), 1.0), slow = 1.0 - fast;
-      const Pack step = slow * low + fast * (0.5 * (b(B.b) + c(A.b)));
-      const Pack h_l = slow * (push_l * inv) + fast * left.h, h_r = slow * (push_r * inv) + fast * right.h;
-      extra_left = g * metric.before * face.rho * (0.5 * (left.h + h_l)) * (step - b_plus);
-      extra_right = g * metric.after * face.rho * (0.5 * (right.h + h_r)) * (step - b_minus);
-      if constexpr (G == Geometry::terrain) {  // each cell sees the pressure with its own metric
-        const Pack own = metric.at_face * metric.c, half = 0.5 * g * K * face.rho;
-        extra_left = extra_left + half * (metric.before * b(B.c) - own) * (h_l * h_l);
-        extra_right = extra_right + half * (metric.after * c(A.c) - own) * (h_r * h_r);
-      }
-      left.h = h_l;
-      right.h = h_r;
-    }
-    laws::ShallowFlux<Pack> flux = laws::hll(face, left, right);
-    (flux.normal + extra_left).store(out.before + f);
-    if constexpr (G != Geometry::flat) (flux.normal + extra_right).store(out.after + f);
-    flux.speed.store(out.speed + f);
-    if (may_lock) {
-      const Mask both_rest = !(max(b(B.speed), c(A.speed)) > 0.0);
-      Pack locked = 0.0;
-      if (any(both_rest)) {
-        const Mask m = both_rest & locked_faces<G>(a, f, K, metric);
-        flux.mass = select(m, 0.0, flux.mass);
-        flux.tangential = select(m, 0.0, flux.tangential);
-        locked = select(m, Pack(1.0), 0.0);
-      }
-      locked.store(out.locked + f);
-    }
-    flux.mass.store(out.mass + f);
-    flux.tangential.store(out.tangential + f);
+  const auto b = [&](const Row& row) { return Pack::load_unaligned(row + f); };
+  const auto c = [&](const Row& row) { return Pack::load_unaligned(row + f + a.shift); };
+  const Pack K = 0.5 * (b(B.K) + c(A.K));
+  Pack gK = g * K;
+  Metric metric;
+  if constexpr (G == Geometry::terrain) {
+    const Pack cB = b(B.c), cA = c(A.c), nB = b(a.along_y ? B.by : B.bx), nA = c(a.along_y ? A.by : A.bx);
+    metric.c = 0.5 * (cB + cA);
+    metric.before = 1.0 - nB * nB * cB * cB;
+    metric.after = 1.0 - nA * nA * cA * cA;
+    metric.at_face = 0.5 * (metric.before + metric.after);
+    gK = gK * metric.at_face * metric.c;
   }
+  const laws::ShallowFace<Pack> face{0.5 * (b(B.rho) + c(A.rho)), 0.5 * (b(B.alpha) + c(A.alpha)), gK,
+                                     max(b(B.slope), c(A.slope))};
+  const auto normal = [&](const auto& row) -> const Row& { return a.along_y ? row.v : row.u; };
+  const auto tangential = [&](const auto& row) -> const Row& { return a.along_y ? row.u : row.v; };
+  laws::ShallowSide<Pack> left{b(B.h) + b(SB.h), b(normal(B)) + b(normal(SB)), b(tangential(B)) + b(tangential(SB))},
+      right{c(A.h) - c(SA.h), c(normal(A)) - c(normal(SA)), c(tangential(A)) - c(tangential(SA))};
+  Pack extra_left = 0.0, extra_right = 0.0;
+  if constexpr (G != Geometry::flat) {
+    const Pack b_plus = b(B.b) + b(SB.b), b_minus = c(A.b) - c(SA.b), Kc = K * metric.c, inv = 1.0 / Kc;
+    const Pack psi_l = Kc * left.h, psi_r = Kc * right.h, eta_l = psi_l + b_plus, eta_r = psi_r + b_minus;
+    const Pack low = min(max(b_plus, b_minus), min(eta_l, eta_r));
+    const Pack push_l = max(0.0, min(eta_l - low, psi_l)), push_r = max(0.0, min(eta_r - low, psi_r));
+    // A layer that runs fast enough climbs the step, however thin it is: towards a bed continuous at the face.
+    const Pack climb = g * abs(b_plus - b_minus) + 1e-200, head = max(left.un * left.un, right.un * right.un);
+    const Pack fast = min(max(head / climb - 1.0, 0.0), 1.0), slow = 1.0 - fast;
+    const Pack step = slow * low + fast * (0.5 * (b(B.b) + c(A.b)));
+    const Pack h_l = slow * (push_l * inv) + fast * left.h, h_r = slow * (push_r * inv) + fast * right.h;
+    extra_left = g * metric.before * face.rho * (0.5 * (left.h + h_l)) * (step - b_plus);
+    extra_right = g * metric.after * face.rho * (0.5 * (right.h + h_r)) * (step - b_minus);
+    if constexpr (G == Geometry::terrain) {  // each cell sees the pressure with its own metric
+      const Pack own = metric.at_face * metric.c, half = 0.5 * g * K * face.rho;
+      extra_left = extra_left + half * (metric.before * b(B.c) - own) * (h_l * h_l);
+      extra_right = extra_right + half * (metric.after * c(A.c) - own) * (h_r * h_r);
+    }
+    left.h = h_l;
+    right.h = h_r;
+  }
+  laws::ShallowFlux<Pack> flux = laws::hll(face, left, right);
+  Pack locked = 0.0;
+  if constexpr (may_lock) {
+    const Mask both_rest = !(max(b(B.speed), c(A.speed)) > 0.0);
+    if (any(both_rest)) {
+      const Mask m = both_rest & locked_faces<G>(a, f, K, metric);
+      flux.mass = select(m, 0.0, flux.mass);
+      flux.tangential = select(m, 0.0, flux.tangential);
+      locked = select(m, Pack(1.0), 0.0);
+    }
+  }
+  return {flux.mass, flux.tangential, flux.normal + extra_left, flux.normal + extra_right, flux.speed, locked};
+}
+
+template <Geometry G, bool may_lock>
+void faces(const FaceArgs& a, FaceRow& out) {
+  const FaceArgs args = a;
+  abreast(
+      args.end, [&](int f) __attribute__((always_inline)) { return fluxes_at<G, may_lock>(args, f); },
+      [&](int f, const Fluxes& flux) __attribute__((always_inline)) {
+        flux.mass.store(out.mass + f);
+        flux.tangential.store(out.tangential + f);
+        flux.before.store(out.before + f);
+        if constexpr (G != Geometry::flat) flux.after.store(out.after + f);
+        flux.speed.store(out.speed + f);
+        if constexpr (may_lock) flux.locked.store(out.locked + f);
+      });
+}
+
+}  // namespace
+
+template <Geometry G>
+void face_row(const FaceArgs& a, FaceRow& out) {
+  a.before->any_rest || a.after->any_rest ? faces<G, true>(a, out) : faces<G, false>(a, out);
 }
 
 #define BAGNOLD_INSTANTIATE(G)                                                                           \

@@ -9,17 +9,6 @@ namespace {
 // three steps after the first leave a relative error below 1e-11 (see the twin in tests/).
 constexpr int density_iterations = 3;
 
-// The chain of operations on a cell is long and the processor looks ahead over less than two of them, so two packs go
-// abreast, one loop an iteration: f(k) computes, put(k, result) stores.
-template <class F, class Put>
-[[gnu::always_inline]] inline void abreast(int n, F&& f, Put&& put) {
-  for (int k = 0; k < n; k += 2 * Pack::lanes) {
-    const auto one = f(k), other = f(k + Pack::lanes);
-    put(k, one);
-    put(k + Pack::lanes, other);
-  }
-}
-
 struct Guess {
   Pack h, e, mu;  // thickness, rho h - D, friction
 };

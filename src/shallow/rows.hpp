@@ -39,6 +39,17 @@ struct FaceRow {
   alignas(64) Row locked;  // only if a cell beside the row rests
 };
 
+// Where the chain of operations on a pack is long and the processor looks ahead over less than two of them, two packs go
+// abreast: f(k) computes, put(k, result) stores. Rows reach two packs beyond n.
+template <class F, class Put>
+[[gnu::always_inline]] inline void abreast(int n, F&& f, Put&& put) {
+  for (int k = 0; k < n; k += 2 * Pack::lanes) {
+    const auto one = f(k), other = f(k + Pack::lanes);
+    put(k, one);
+    put(k + Pack::lanes, other);
+  }
+}
+
 enum class Geometry { flat, bed, terrain };
 
 // ---- closure_rows.cpp --------------------------------------------------------------------------------------------
