@@ -11,6 +11,8 @@ namespace {
 
 // In one dimension nothing crosses the faces above and below.
 void still_rows(Scratch& w) {
+  if (w.still_rows) return;
+  w.still_rows = true;
   for (FaceRow& f : w.y_faces) {
     f = {};
     std::fill_n(f.locked, row_size, 1.0);
@@ -43,6 +45,7 @@ class Sweep {
   std::size_t column() const { return static_cast<std::size_t>(t_.i0 - reach + halo); }
 
   void run_rows() {
+    w_.still_rows = false;
     for (int r = t_.j0 - reach; r < t_.j0 + t_.ny + reach; ++r) {
       close_cells(r);
       if (r > t_.j0 - reach) find_drops(r);

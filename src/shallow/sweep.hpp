@@ -8,6 +8,7 @@ struct Scratch {
   CellRow cells[4];
   SlopeRow x_slopes, y_slopes[2];
   FaceRow x_faces, y_faces[2];
+  bool still_rows = false;  // y_faces and y_slopes are those of one dimension
   alignas(64) Row D_new, Msx, Msy, bend, fall;
   Conserved predicted;  // by stage 1, over a tile
   Conserved kept;       // of stage 1 for stage 2: D: share of the old momentum that friction takes; M: rates of change
