@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "app/shallow_input.hpp"
 #include "core/fields.hpp"
@@ -107,9 +106,7 @@ closure::ClosureSet read_closure(const Case& input) {
   const double grain_density = s.get<double>("grain_density", 1.0, positive(), "mass/length^3");
   closure::ClosureSet set;
   if (name.ends_with(".toml")) {
-    const auto path = std::filesystem::absolute(std::filesystem::path(input.directory()) / name).lexically_normal();
-    s.resolve("set", path.string());
-    set = from_file(path.string(), s.get<std::string>("lambda", "1"), d, grain_density);
+    set = from_file(input.file(s, "set"), s.get<std::string>("lambda", "1"), d, grain_density);
   } else if (name != "custom") {
     const auto known = closure::builtin(name, d, grain_density);
     if (!known)

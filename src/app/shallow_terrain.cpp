@@ -2,27 +2,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "app/shallow_input.hpp"
 
 namespace bagnold::app {
-namespace {
+
 using config::Case;
 using config::Section;
 
-// The resolved case names the file from the root, so that it can be run again and resumed from anywhere.
-std::filesystem::path file_of(const Case& input, const Section& section, const std::string& key) {
-  const auto path =
-      std::filesystem::absolute(std::filesystem::path(input.directory()) / section.get<std::string>(key, std::nullopt))
-          .lexically_normal();
-  section.resolve(key, path.string());
-  return path;
-}
-}  // namespace
-
 void read_terrain(const Case& input, const Section& section, shallow::Definition& d, ShallowInput& out) {
-  const io::Raster raster = io::read_raster(file_of(input, section, "elevation"));
+  const io::Raster raster = io::read_raster(input.file(section, "elevation"));
   if (io::in_degrees(raster.projection))
     section.fail("elevation", "its coordinates are degrees; expected a projected coordinate system (lengths)");
   const double g = section.get<double>("gravity", 9.81, positive(), "length/time^2");
@@ -52,7 +41,7 @@ void release_on_terrain(const Case& input, const Section& s, ShallowInput& out) 
     return h[static_cast<std::size_t>(j) * static_cast<std::size_t>(g.nx) + static_cast<std::size_t>(i)];
   };
   if (s.has("raster")) {
-    const io::Raster r = io::read_raster(file_of(input, s, "raster"));
+    const io::Raster r = io::read_raster(input.file(s, "raster"));
     if (!io::same_projection(r.projection, out.projection))
       s.fail("raster", "its projection is not that of the terrain");
     if (r.nx != g.nx || r.ny != g.ny || std::abs(r.x0 - g.x0) > 1e-6 * g.dx || std::abs(r.y0 - g.y0) > 1e-6 * g.dy ||
@@ -64,7 +53,7 @@ void release_on_terrain(const Case& input, const Section& s, ShallowInput& out) 
               r.nx, r.ny, r.dx, r.dy, r.x0, r.y0, g.nx, g.ny, g.dx, g.dy, g.x0, g.y0));
     for (std::size_t k = 0; k < h.size(); ++k) h[k] = std::isfinite(r.values[k]) ? r.values[k] : 0;
   } else {
-    const io::PolygonLayer layer = io::read_polygons(file_of(input, s, "polygons"));
+    const io::PolygonLayer layer = io::read_polygons(input.file(s, "polygons"));
     if (!io::same_projection(layer.projection, out.projection))
       s.fail("polygons", "their projection is not that of the terrain");
     const auto thickness = s.get_auto("thickness", positive(), "length");

@@ -69,9 +69,10 @@ RunContext read_context(config::Case& input, Model& model, const fs::path& direc
 int run(const RunOptions& options) {
   set_threads(options.threads);
   config::Case input = config::Case::from_file(options.input, options.set);
-  const auto model = make_model(input);
   const fs::path directory =
       options.directory.empty() ? fs::path("out") / fs::path(options.input).stem() : fs::path(options.directory);
+  input.will_live_in(directory.string());
+  const auto model = make_model(input);
   const RunContext context = read_context(input, *model, directory, options.quiet);
   prepare_directory(directory, options.overwrite);
   io::write_file(directory / "case.toml", context.resolved_case);

@@ -13,7 +13,7 @@ namespace bagnold::config {
 struct Case::Impl {
   Node root;
   Resolved resolved;
-  std::string directory;
+  std::string directory, home;  // of the case, of the resolved case
 };
 
 Resolved::Entry& Resolved::entry(std::string_view key) {
@@ -242,7 +242,7 @@ Case Case::from_file(const std::string& path, const std::vector<std::string>& ov
   std::ostringstream text;
   text << file.rdbuf();
   Case input = from_text(text.str(), path, overrides);
-  input.impl_->directory = std::filesystem::path(path).parent_path().string();
+  input.impl_->directory = input.impl_->home = std::filesystem::path(path).parent_path().string();
   return input;
 }
 
@@ -262,7 +262,14 @@ void Case::fail(const std::string& key, const std::string& what) const {
 }
 
 std::string Case::resolved() const { return to_toml(impl_->resolved); }
-const std::string& Case::directory() const { return impl_->directory; }
+std::string Case::file(const Section& section, std::string_view key) const {
+  namespace fs = std::filesystem;
+  const fs::path file = (fs::path(impl_->directory) / section.get<std::string>(key, std::nullopt)).lexically_normal();
+  const fs::path home = fs::absolute(impl_->home.empty() ? "." : impl_->home);
+  section.resolve(key, fs::relative(fs::absolute(file), home).generic_string());
+  return file.string();
+}
+void Case::will_live_in(const std::string& directory) { impl_->home = directory; }
 
 namespace {
 void reject_unread_in(const Node& node) {

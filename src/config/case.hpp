@@ -83,8 +83,12 @@ class Case {
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
   // Call when everything has been read: throws InputError for the first key nobody asked for.
   void reject_unread() const;
-  std::string resolved() const;          // TOML text of every key asked for, defaults included
-  const std::string& directory() const;  // folder of the file, for paths relative to it
+  std::string resolved() const;  // TOML text of every key asked for, defaults included
+  // The file that `key` of `section` names, relative to the folder of the case.
+  std::string file(const Section& section, std::string_view key) const;
+  // Where the resolved case will be kept: there it names files relative to `directory`, so that it can be run from
+  // there, and both can be moved together. At first the folder of the case itself.
+  void will_live_in(const std::string& directory);
 
  private:
   Case();

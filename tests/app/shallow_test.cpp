@@ -188,16 +188,63 @@ TEST(Valley, MapsLieWhereTheTerrainLies) {
   EXPECT_GT(series["section0_discharge"].back(), 1);
 }
 
-TEST(Valley, TheResolvedCaseRunsAgainAndResumesFromItsOwnFolder) {
+// The case kept with a run names its inputs relative to the run: it runs again, resumes, and moves together with them.
+TEST(Valley, TheResolvedCaseRunsAgainAndMovesWithItsInputs) {
+  const Scratch scratch;
+  fs::create_directories(scratch / "here" / "data");
+  make_valley(scratch);
+  for (const char* name : {"dem.tif", "release.geojson"}) fs::rename(scratch / name, scratch / "here" / "data" / name);
+  write_text(scratch / "here" / "c.toml",
+             valley_case("data/dem.tif", "shape = \"polygons\"\npolygons = \"data/release.geojson\"\n"));
+  ASSERT_EQ(bagnold(scratch, "run here/c.toml -o here/runs/a --quiet").exit_code, 0);
+  const std::string kept = read_text(scratch / "here" / "runs" / "a" / "case.toml");
+  EXPECT_NE(kept.find("elevation = \"../../data/dem.tif\""), std::string::npos) << kept;
+  EXPECT_NE(kept.find("polygons = \"../../data/release.geojson\""), std::string::npos) << kept;
+  EXPECT_EQ(kept.find(scratch.path().string()), std::string::npos) << kept;
+  EXPECT_EQ(read_text(scratch / "here" / "runs" / "a" / "run.h5").find(scratch.path().string()), std::string::npos);
+
+  fs::rename(scratch / "here", scratch / "elsewhere");
+  const Outcome resumed = bagnold(scratch, "resume elsewhere/runs/a --quiet");
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  const Outcome again = bagnold(scratch, "run elsewhere/runs/a/case.toml -o b --quiet");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(read_text(scratch / "elsewhere" / "runs" / "a" / "series.csv") ==
+              read_text(scratch / "b" / "series.csv"));
+  EXPECT_NE(read_text(scratch / "b" / "case.toml").find("\"../elsewhere/data/dem.tif\""), std::string::npos);
+}
+
+TEST(Valley, InterruptedAndResumedGivesTheSameBits) {
   const Scratch scratch;
   make_valley(scratch);
   write_text(scratch / "c.toml", valley_case("dem.tif", square));
-  ASSERT_EQ(bagnold(scratch, "run c.toml -o a --quiet").exit_code, 0);
-  const Outcome again = bagnold(scratch, "run a/case.toml -o b --quiet");
-  ASSERT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_TRUE(read_text(scratch / "a" / "series.csv") == read_text(scratch / "b" / "series.csv"));
-  const Outcome resumed = bagnold(scratch, "resume a --quiet");
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  std::string longer =
+      " --quiet --set time.end=1e4 --set time.stop_when_arrested=false --set output.series_every=0.05 "
+      "--set output.snapshot_every=5000 --set output.vtk_every=5000";
+  for (const char* side : {"left", "right", "bottom", "top"})
+    longer += std::string(" --set boundary.") + side + "=wall";
+  longer += " --set scheme.max_step=0.002";  // so that it is not over before it is cut
+  const std::string series = (scratch / "cut" / "series.csv").string();
+  const Outcome cut = bagnold(
+      scratch, "run c.toml -o cut" + longer + " & pid=$!; while kill -0 $pid && ! [ \"$(cat " + series +
+                   " | wc -l)\" -gt 20 ]; do sleep 0.02; done 2>/dev/null; kill -TERM $pid; wait $pid; exit $? #");
+  ASSERT_EQ(cut.exit_code, 75) << cut.err;
+  const auto stopped = io::read_json(scratch / "cut" / "summary.json");
+  EXPECT_EQ(stopped["status"], "interrupted");
+  const double t = stopped["time"].get<double>();
+  ASSERT_GT(t, 0);
+  // Both go a little further than where the run was cut: the case kept with it may be given another end.
+  std::string kept = read_text(scratch / "cut" / "case.toml");
+  const std::string end = "end = 10000.0";
+  ASSERT_NE(kept.find(end), std::string::npos) << kept;
+  const std::string sooner = std::to_string(std::ceil(1.2 * t) + 5);
+  kept.replace(kept.find(end), end.size(), "end = " + sooner);
+  write_text(scratch / "cut" / "case.toml", kept);
+  ASSERT_EQ(bagnold(scratch, "resume cut --quiet").exit_code, 0);
+  ASSERT_EQ(bagnold(scratch, "run c.toml -o whole" + longer + " --set time.end=" + sooner).exit_code, 0);
+  EXPECT_TRUE(read_text(scratch / "whole" / "series.csv") == read_text(scratch / "cut" / "series.csv"));
+  for (const char* map :
+       {"max_thickness.tif", "max_speed.tif", "arrival_time.tif", "deposit.tif", "outside_validity.tif"})
+    EXPECT_TRUE(read_text(scratch / "whole" / map) == read_text(scratch / "cut" / map)) << map;
 }
 
 // Thickness is normal to the ground: a vertical one is cos(slope) of it thick, and a column keeps its volume.
@@ -321,6 +368,32 @@ TEST(ClosureFile, OfTheNumbersOfThePaperGivesTheBitsOfTheBuiltInSet) {
   }
   EXPECT_TRUE(read_text(scratch / "file" / "final.csv") == read_text(scratch / "set" / "final.csv"));
   EXPECT_FALSE(read_text(scratch / "other" / "final.csv") == read_text(scratch / "set" / "final.csv"));
+}
+
+// The mask is the range of tan(theta) = mu(h, F), eq. 37: at h = 10, lambda = 1, 20 degrees are F = 0.053 and 29 degrees
+// F = 1.489, which are u = 0.161 and u = 4.53 at 22 degrees, where a layer at rest stays. What rests uses no closure.
+TEST(ClosureFile, ValidityMaskIsOneWhereFrictionLeavesTheMeasuredRange) {
+  const Scratch scratch;
+  std::string text = closure_file;
+  text.replace(text.find("[17.708, 29.0]"), 14, "[20.0, 29.0]");
+  write_text(scratch / "closure.toml", text);
+  for (const auto& [speed, outside] : {std::pair{0.0, 0.0}, {0.12, 1.0}, {0.20, 0.0}, {4.4, 0.0}, {4.6, 1.0}}) {
+    write_text(
+        scratch / "c.toml",
+        "model = \"shallow\"\n[scenario]\nkind = \"incline\"\nangle_deg = 22.0\nlength = 20.0\ncells = 10\n[closure]\n"
+        "set = \"closure.toml\"\n[boundary]\nleft = \"periodic\"\nright = \"periodic\"\n[release]\nshape = \"slab\"\n"
+        "thickness = 10.0\nvelocity = " +
+            std::to_string(speed) + "\n[time]\nend = 1e-3\n");
+    const Outcome o = bagnold(scratch, "run c.toml -o out --quiet --overwrite --set scheme.max_step=1e-3");
+    ASSERT_EQ(o.exit_code, 0) << o.err;
+    std::istringstream lines(read_text(scratch / "out" / "final.csv"));
+    std::string line;
+    int cells = -2;  // names, units
+    for (; std::getline(lines, line); ++cells)
+      if (cells >= 0) EXPECT_EQ(line.substr(line.rfind(',') + 1), outside > 0 ? "1" : "0") << speed;
+    EXPECT_EQ(cells, 10);
+    EXPECT_EQ(io::read_json(scratch / "out" / "summary.json")["outside_validity_fraction"].get<double>(), outside);
+  }
 }
 
 TEST(ClosureFile, ErrorsNameTheFileAndTheKey) {
