@@ -66,32 +66,16 @@ double transcritical_error(int n, double* froude_in, double* froude_out) {
   Definition s = line(n, 0, length, theta, set);
   const PreparedClosure p = prepare(s);
   const auto h_of = [&](double x) { return 9.5 - 2.5 * std::tanh((x - middle) / width); };
-  const double M = closure_at(p, 9.5, 2.5).rho * 9.5 * 2.5;
-  const auto u_of = [&](double h) {
-    double lo = 0, hi = 20;
-    for (int k = 0; k < 100; ++k) {
-      const double u = 0.5 * (lo + hi);
-      (closure_at(p, h, u).rho * h * u < M ? lo : hi) = u;
-    }
-    return 0.5 * (lo + hi);
-  };
+  const CarriedByItsBed flow{p, h_of, closure_at(p, 9.5, 2.5).rho * 9.5 * 2.5, T, gc};
+  const auto u_of = [&](double h) { return flow.u_of(h); };
   *froude_in = u_of(h_of(0)) / std::sqrt(gc * h_of(0));
   *froude_out = u_of(h_of(length)) / std::sqrt(gc * h_of(length));
-  const auto flux = [&](double x) {
-    const double h = h_of(x), u = u_of(h);
-    const CellClosure c = closure_at(p, h, u);
-    return c.alpha * M * u + 0.5 * c.K * gc * c.rho * h * h;
-  };
-  const auto slope = [&](double x) {  // b_x
-    const double h = h_of(x), e = 1e-3;
-    const CellClosure c = closure_at(p, h, u_of(h));
-    return T - c.mu - (flux(x + e) - flux(x - e)) / (2 * e) / (gc * c.rho * h);
-  };
   constexpr int fine = 8000;
   const double step = (length + 40) / fine, begin = -20;
   std::vector<double> b(fine + 1, 0.0);
   for (int k = 0; k < fine; ++k)
-    b[static_cast<std::size_t>(k) + 1] = b[static_cast<std::size_t>(k)] + slope(begin + (k + 0.5) * step) * step;
+    b[static_cast<std::size_t>(k) + 1] =
+        b[static_cast<std::size_t>(k)] + flow.bed_slope(begin + (k + 0.5) * step) * step;
   s.bed = padded_bed(s.grid, [&](double x, double) {
     const double at = std::min(std::max((x - begin) / step, 0.0), fine - 1.0);
     const auto k = static_cast<std::size_t>(at);

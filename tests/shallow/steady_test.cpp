@@ -143,38 +143,19 @@ TEST(Problem13, ContractionChokes) {
 namespace {
 
 // 14. Steady state with every closure on: choose h(x) and M, solve rho(h, u) h u = M, and let the bed carry it.
-double inverse_error(int n, double theta, double h0, double flux_factor) {
+double inverse_error(int n, double theta, double h0, double u0) {
   auto set = *closure::builtin("weinhart2012/1", 1, 6 / std::numbers::pi);
   set.static_branch = {};
   const double length = 400, gc = std::cos(rad(theta)), T = tan_d(theta);
   Definition s = line(n, 0, length, theta, set);
   const PreparedClosure p = prepare(s);
   const auto h_of = [&](double x) { return h0 * (1 + 0.08 * std::sin(2 * std::numbers::pi * x / length)); };
-  const double u0 = basal_friction(set, 1, h0, 0) > 0 ? flux_factor : 0, M = closure_at(p, h0, u0).rho * h0 * u0;
-  const auto u_of = [&](double h) {
-    double lo = 0, hi = 20;
-    for (int k = 0; k < 100; ++k) {
-      const double u = 0.5 * (lo + hi);
-      (closure_at(p, h, u).rho * h * u < M ? lo : hi) = u;
-    }
-    return 0.5 * (lo + hi);
-  };
-  const auto flux = [&](double x) {
-    const double h = h_of(x), u = u_of(h);
-    const CellClosure c = closure_at(p, h, u);
-    const double D = c.rho * h;
-    return c.alpha * M * M / D + 0.5 * c.K * gc * D * h;
-  };
-  const auto slope = [&](double x) {  // b_x
-    const double h = h_of(x), u = u_of(h), e = 1e-3;
-    const CellClosure c = closure_at(p, h, u);
-    return T - c.mu - (flux(x + e) - flux(x - e)) / (2 * e) / (gc * c.rho * h);
-  };
+  const CarriedByItsBed flow{p, h_of, closure_at(p, h0, u0).rho * h0 * u0, T, gc};
   const int fine = 40 * n;  // Simpson-like midpoint sums of b_x
   std::vector<double> b(static_cast<std::size_t>(fine) + 1, 0.0);
   for (int k = 0; k < fine; ++k)
     b[static_cast<std::size_t>(k) + 1] =
-        b[static_cast<std::size_t>(k)] + slope((k + 0.5) * length / fine) * length / fine;
+        b[static_cast<std::size_t>(k)] + flow.bed_slope((k + 0.5) * length / fine) * length / fine;
   const double drop = b.back();
   s.bed = padded_bed(s.grid, [&](double x, double) {
     const double turns = std::floor(x / length), at = (x / length - turns) * fine;
@@ -188,7 +169,7 @@ double inverse_error(int n, double theta, double h0, double flux_factor) {
   s.gravity.slope_x -= drop / length;
   s.boundary[0].kind = s.boundary[1].kind = BoundaryKind::periodic;
   Flow run(s);
-  run.fill([&](double x, double) { return h_of(x); }, [&](double x, double) { return u_of(h_of(x)); });
+  run.fill([&](double x, double) { return h_of(x); }, [&](double x, double) { return flow.u_of(h_of(x)); });
   run.to(150);
   const Profile q = run.profile();
   std::vector<double> exact;

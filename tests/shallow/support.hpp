@@ -114,4 +114,29 @@ inline void tabulate(const std::string& problem, const std::string& quantity, do
     }
 }
 
+// The bed of problem 14 under a steady flow of given thickness and mass flux, with every closure on.
+struct CarriedByItsBed {
+  PreparedClosure p;
+  std::function<double(double)> h_of;
+  double M, T, gc;               // mass flux, tan(theta), g cos(theta)
+  double u_of(double h) const {  // rho(h, u) h u = M
+    double lo = 0, hi = 20;
+    for (int k = 0; k < 100; ++k) {
+      const double u = 0.5 * (lo + hi);
+      (closure_at(p, h, u).rho * h * u < M ? lo : hi) = u;
+    }
+    return 0.5 * (lo + hi);
+  }
+  double momentum_flux(double x) const {
+    const double h = h_of(x), u = u_of(h);
+    const CellClosure c = closure_at(p, h, u);
+    return c.alpha * M * u + 0.5 * c.K * gc * c.rho * h * h;
+  }
+  double bed_slope(double x) const {
+    const double h = h_of(x), e = 1e-3;
+    const CellClosure c = closure_at(p, h, u_of(h));
+    return T - c.mu - (momentum_flux(x + e) - momentum_flux(x - e)) / (2 * e) / (gc * c.rho * h);
+  }
+};
+
 }  // namespace shallow_test
