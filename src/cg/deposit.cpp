@@ -76,7 +76,7 @@ template <class Grains, class Contact>
 void share_contact(ProfileMoments& p, const Grains& grains, std::int64_t flowing, const Contact& c, ProfileScratch& w,
                    double least_height) {
   const Vec3 &r = c.branch, &f = c.force, &n = c.normal;
-  double* to_i = share_of(w, static_cast<std::size_t>(c.i), w.next_slot[0]);
+  double* to_i = share_of(w, static_cast<std::size_t>(c.i));
   const dem::ContactForce contact{c.i, c.j, r, n, f, c.overlap};
   const Lanes fabric{n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z, 0, 0};
   lanes(to_i) += fabric;
@@ -87,7 +87,7 @@ void share_contact(ProfileMoments& p, const Grains& grains, std::int64_t flowing
   if (is_level) add_level_contact(p, grains.z(static_cast<std::size_t>(c.i)), contact);
   const double x = is_level ? 0 : r.x / r.z, y = is_level ? 0 : r.y / r.z;
   const Lanes stress{f.x * y, f.x, f.y * x, f.y * y, f.y, f.z * x, f.z * y, f.z};
-  double* to_j = share_of(w, static_cast<std::size_t>(c.j), w.next_slot[0]);
+  double* to_j = share_of(w, static_cast<std::size_t>(c.j));
   lanes(to_j) += fabric;
   to_i[7] += f.x * x;
   to_j[7] -= f.x * x;
@@ -105,7 +105,6 @@ void add(ProfileMoments& p, const Grains& grains, std::int64_t flowing, const Co
     w.ranges.emplace_back(static_cast<std::size_t>(i), static_cast<std::size_t>(std::min(i + range, flowing)));
   sort_by_bin(p, grains, w);
   prepare_shares(w, static_cast<std::size_t>(flowing));
-  w.next_slot.assign(1, 0);
   const double least_height = level(p);
   for_each_batch([&](const auto& contacts) {
     for (const auto& c : contacts) share_contact(p, grains, flowing, c, w, least_height);
@@ -119,10 +118,10 @@ void add(ProfileMoments& p, const Grains& grains, std::int64_t flowing, const Co
 
 void prepare_shares(ProfileScratch& w, std::size_t grains) {
   if (w.shares.size() < grains) w.shares.resize(grains);
-  if (w.slot.size() < grains) w.slot.resize(grains, -1);
+  if (w.touches.size() < grains) w.touches.resize(grains);
   if (w.unfinished) {
     std::fill(w.shares.begin(), w.shares.end(), ContactShare{});
-    std::fill(w.slot.begin(), w.slot.end(), -1);
+    std::fill(w.touches.begin(), w.touches.end(), std::uint8_t{0});
   }
   w.unfinished = true;
 }

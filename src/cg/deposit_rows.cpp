@@ -116,11 +116,6 @@ void share_section(const dem::fast::Engine& engine, const RowGrains& grains, std
   auto& special = w.special[section];
   special.clear();
   w.contacts[section] = 0;
-  const std::size_t here = section, there = section + 1 == engine.slabs.size() ? 0 : section + 1;
-  const auto share_of_row = [&](std::size_t row) {
-    const auto& slab = engine.slabs[here];
-    return share_of(w, row, w.next_slot[row - slab.begin < slab.end - slab.begin ? here : there]);
-  };
   const Lanes opposite{1, 1, 1, 1, 1, 1, 1, -1};
   const std::size_t count = dem::fast::look_at_contacts(engine, section, packs);
   PackShares share;
@@ -133,7 +128,7 @@ void share_section(const dem::fast::Engine& engine, const RowGrains& grains, std
       const std::size_t i = c.i[k], j = c.j[k];
       const bool i_flows = grains.flows(i), j_flows = grains.flows(j);
       if (i_flows && j_flows) {
-        double *to_i = share_of_row(i), *to_j = share_of_row(j);
+        double *to_i = share_of(w, i), *to_j = share_of(w, j);
         lanes(to_i) += share.low[k];
         lanes(to_i + 8) += share.high[k];
         lanes(to_j) += opposite * share.low[k];
@@ -141,7 +136,7 @@ void share_section(const dem::fast::Engine& engine, const RowGrains& grains, std
         if ((is_level >> k & 1) != 0) special.push_back(lane_of(c, k));
         continue;
       }
-      Lanes& fabric = lanes(share_of_row(i_flows ? i : j));
+      Lanes& fabric = lanes(share_of(w, i_flows ? i : j));
       fabric += __builtin_shufflevector(share.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8);
       dem::ContactForce contact = lane_of(c, k);
       if (!i_flows) contact = {contact.j, contact.i, -contact.branch, -contact.normal, -contact.force, contact.overlap};
@@ -160,8 +155,6 @@ void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch
   sort_by_bin(p, grains, w);
 
   prepare_shares(w, engine.rows.size());
-  w.next_slot.clear();
-  for (const auto& slab : engine.slabs) w.next_slot.push_back(static_cast<std::int32_t>(slab.begin));
   w.packs.resize(std::max(w.packs.size(), static_cast<std::size_t>(threads())));
   w.special.resize(sections);
   w.contacts.resize(sections);

@@ -92,8 +92,10 @@ void add_bulk(const MeanProfile& p, const Column& c, double d, FlowNumbers& out)
   const double lo = *out.base + 2 * d, hi = *out.surface - 4 * d;
   if (hi - lo < 2 * d) return;  // too thin to have a bulk
   out.phi_bulk = integrate_nodes(p.z, c.phi, lo, hi) / (hi - lo);
-  // A wide kernel has smoothed the layers away: what undoing it would show is noise.
-  if (hi - lo >= 4 * d && p.kernel_width <= 0.4 * d) out.layering = layer_order(p, c.rho, lo, hi, d);
+  // Layers are sought up to two diameters below the surface, over four of them at least. A wide kernel has smoothed them
+  // away: what undoing it would show is noise.
+  const double top = *out.surface - 2 * d;
+  if (top - lo >= 4 * d && p.kernel_width <= 0.4 * d) out.layering = layer_order(p, c.rho, lo, top, d);
 }
 
 void add_balances(const MeanProfile& p, const Column& c, const FlowSetting& setting, FlowNumbers& out) {

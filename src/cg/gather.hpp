@@ -106,13 +106,10 @@ void sort_by_bin(ProfileMoments& p, const Grains& grains, ProfileScratch& w) {
       threads);
 }
 
-// Where the contacts of a grain are summed; `next` is the first free place.
-inline double* share_of(ProfileScratch& w, std::size_t grain, std::int32_t& next) {
-  std::int32_t& slot = w.slot[grain];
-  const bool fresh = slot < 0;
-  slot = fresh ? next : slot;
-  next += fresh ? 1 : 0;
-  return w.shares[static_cast<std::size_t>(slot)].channel.data();
+// Where the contacts of a grain are summed.
+inline double* share_of(ProfileScratch& w, std::size_t grain) {
+  w.touches[grain] = 1;
+  return w.shares[grain].channel.data();
 }
 
 inline double sum_of(const Lanes& a) { return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7])); }
@@ -135,9 +132,9 @@ class BinDeposit {
         grains_.carry(i, memo_, a, b);
         volume_[touched] = memo_.volume;
         grain_[touched] = g;
-        share_[touched] = w_.slot[i];
-        touched += w_.slot[i] >= 0 ? 1 : 0;
-        w_.slot[i] = -1;
+        share_[touched] = item[g];
+        touched += w_.touches[i];
+        w_.touches[i] = 0;
         return g;
       });
       add_sums(bin + kFabric, touched, [&](std::size_t t, Lanes& a, Lanes& b) {

@@ -72,10 +72,9 @@ struct alignas(64) ContactShare {
 
 // Memory of the functions below, kept between calls so that nothing is allocated.
 struct ProfileScratch {
-  std::vector<ContactShare> shares;         // 0 between calls,
-  std::vector<std::int32_t> slot;           // of a grain in `shares`; -1 if it touches nothing, and between calls,
-  bool unfinished = false;                  // unless one was left by an exception
-  std::vector<std::int32_t> next_slot;      // by slab
+  std::vector<ContactShare> shares;         // of each grain; 0 between calls,
+  std::vector<std::uint8_t> touches;        // whether it has contacts; 0 between calls,
+  bool unfinished = false;                  // unless they were left by an exception
   std::vector<std::int32_t> bin, count;     // of a grain; by range of grains and bin
   std::vector<std::int32_t> begin, order;   // by bin; grains in the order of their bins
   std::vector<double> place, sorted_place;  // s of a grain in its bin; the same in that order

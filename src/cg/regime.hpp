@@ -25,7 +25,7 @@ struct RegimeCriteria {
   double exponent = 0.5;         // accelerating: R grows faster than this power of time ...
   double errors = 3;             // ... by a trend of more than so many standard errors, correlated noise considered
   double swing = 0.1;  // oscillating: standard deviation of the detrended R, averaged over unit times, over its mean
-  double layer_order = 0.1;  // layered: FlowNumbers::layering above this in a flow that is otherwise steady
+  double layer_order = 0.3;  // layered: FlowNumbers::layering above this in a flow that is otherwise steady
 };
 
 struct RegimeReport {

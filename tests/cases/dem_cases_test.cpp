@@ -53,6 +53,19 @@ TEST(Cases, DemoTomlFlows) {
   EXPECT_GT(r.series["u_x"].back(), 0.3);
 }
 
+// The balances of a steady flow, made quick by soft grains: softness changes neither.
+TEST(Cases, DemoTomlBalancesItsWeight) {
+  const Result r = run_case("demo.toml",
+                            "--set contact.collision_time=0.02 --set scenario.length=7 --set scenario.width=7 --set "
+                            "scenario.fill_height=9 --set time.end=160 --set cg.from=80");
+  const auto& flow = r.summary["flow"];
+  EXPECT_EQ(flow["regime"], "steady");
+  EXPECT_LT(flow["lithostatic_error"], 0.005);
+  EXPECT_LT(flow["friction_angle_error_deg"], 0.4);
+  EXPECT_NEAR(flow["mu_base"], std::tan(26 * std::numbers::pi / 180), 0.01);
+  EXPECT_LT(flow["layering"], 0.3);
+}
+
 TEST(Cases, FlatBaseTomlSlipsAlongThePlane) {
   const Result r = run_case("flat-base.toml", small_chute + " --set time.end=30");
   EXPECT_EQ(r.summary["base_grains"], 0);

@@ -122,7 +122,7 @@ struct Series {
 TEST(Regime, FollowsTheStatedCriteria) {
   const Series steady(2000, [](double t) { return 500 * (1 - std::exp(-t / 150)); });
   EXPECT_EQ(steady.classify().regime, cg::Regime::steady);
-  EXPECT_EQ(steady.classify(0.3).regime, cg::Regime::layered);
+  EXPECT_EQ(steady.classify(0.4).regime, cg::Regime::layered);
   EXPECT_EQ(steady.classify(std::nullopt).regime, cg::Regime::steady);
   EXPECT_NEAR(*steady.classify().energy_ratio, 500, 1);
   EXPECT_LT(*steady.classify().energy_ratio_err, 1);
