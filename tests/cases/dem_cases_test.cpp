@@ -57,7 +57,7 @@ TEST(Cases, DemoTomlFlows) {
 TEST(Cases, DemoTomlBalancesItsWeight) {
   const Result r = run_case("demo.toml",
                             "--set contact.collision_time=0.02 --set scenario.length=7 --set scenario.width=7 --set "
-                            "scenario.fill_height=9 --set time.end=160 --set cg.from=80");
+                            "scenario.fill_height=9 --set time.end=130 --set cg.from=70");
   const auto& flow = r.summary["flow"];
   EXPECT_EQ(flow["regime"], "steady");
   EXPECT_LT(flow["lithostatic_error"], 0.005);
