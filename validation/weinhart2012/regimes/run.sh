@@ -23,3 +23,19 @@ for theta in 18 24 34; do
   for key in status regime time h u_bar; do row="$row,$(value "$scratch/$theta/summary.json" $key | tr -d '"')"; done
   echo "$row,$(largest "$scratch/$theta/series.csv" max_overlap_over_radius)" | tee -a "$here/results.csv"
 done
+
+# Layers: over a smooth base, and none over a rough one (cases/demo.toml, the smaller box).
+echo "theta_deg,lambda,time,regime,layering,layering_err,phi_bulk,h,u_bar,energy_growth" > "$here/layers.csv"
+while read -r theta lambda end from; do
+  out=$scratch/layers-$theta-$lambda
+  "$program" run "$top/cases/demo.toml" -o "$out" --overwrite --quiet --set scenario.angle_deg="$theta" \
+    --set scenario.base_size_ratio="$lambda" --set time.end="$end" --set cg.from="$from" --set output.vtk_every=1000
+  row="$theta,$lambda,$end"
+  for key in regime layering layering_err phi_bulk h u_bar energy_growth; do
+    row="$row,$(value "$out/summary.json" $key | tr -d '"')"
+  done
+  echo "$row" | tee -a "$here/layers.csv"
+done <<'END'
+22 0.5 400 300
+26 1 150 110
+END
