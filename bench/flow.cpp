@@ -133,10 +133,10 @@ void print(const Row& r, double hz) {
       100 * r.rebuild_part);
 }
 
-// Wall time of one thread over that of `count`, best of three by turns.
+// Wall time of one thread over that of `count`, best of five by turns.
 double speed_up(const DemState& start, const ContactLaws& laws, int steps, int count) {
   double one = 1e30, many = 1e30;
-  for (int round = 0; round < 3; ++round)
+  for (int round = 0; round < 5; ++round)
     for (const int threads : {1, count}) {
       set_threads(threads);
       DemState s = warmed(start, laws);

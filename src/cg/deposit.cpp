@@ -76,23 +76,21 @@ template <class Grains, class Contact>
 void share_contact(ProfileMoments& p, const Grains& grains, std::int64_t flowing, const Contact& c, ProfileScratch& w,
                    double least_height) {
   const Vec3 &r = c.branch, &f = c.force, &n = c.normal;
-  double* to_i = share_of(w, static_cast<std::size_t>(c.i));
   const dem::ContactForce contact{c.i, c.j, r, n, f, c.overlap};
-  const Lanes fabric{n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z, 0, 0};
-  lanes(to_i) += fabric;
-  if (touches_base(flowing, c))
+  Lanes fabric{n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z, 0, 0};
+  if (touches_base(flowing, c)) {
+    share(w, static_cast<std::size_t>(c.i), fabric, Lanes{});
     return add_base_contact(p, grains.z(static_cast<std::size_t>(c.i)), grains.diameter(static_cast<std::size_t>(c.i)),
                             contact);
+  }
   const bool is_level = std::abs(r.z) < least_height;
   if (is_level) add_level_contact(p, grains.z(static_cast<std::size_t>(c.i)), contact);
   const double x = is_level ? 0 : r.x / r.z, y = is_level ? 0 : r.y / r.z;
   const Lanes stress{f.x * y, f.x, f.y * x, f.y * y, f.y, f.z * x, f.z * y, f.z};
-  double* to_j = share_of(w, static_cast<std::size_t>(c.j));
-  lanes(to_j) += fabric;
-  to_i[7] += f.x * x;
-  to_j[7] -= f.x * x;
-  lanes(to_i + 8) += stress;
-  lanes(to_j + 8) -= stress;
+  fabric[7] = f.x * x;
+  share(w, static_cast<std::size_t>(c.i), fabric, stress);
+  fabric[7] = -fabric[7];
+  share(w, static_cast<std::size_t>(c.j), fabric, -stress);
 }
 
 // for_each_batch(f): f(span of contacts) until all have been seen.
@@ -119,10 +117,7 @@ void add(ProfileMoments& p, const Grains& grains, std::int64_t flowing, const Co
 void prepare_shares(ProfileScratch& w, std::size_t grains) {
   if (w.shares.size() < grains) w.shares.resize(grains);
   if (w.touches.size() < grains) w.touches.resize(grains);
-  if (w.unfinished) {
-    std::fill(w.shares.begin(), w.shares.end(), ContactShare{});
-    std::fill(w.touches.begin(), w.touches.end(), std::uint8_t{0});
-  }
+  if (w.unfinished) std::fill(w.touches.begin(), w.touches.end(), std::uint8_t{0});
   w.unfinished = true;
 }
 

@@ -66,23 +66,6 @@ struct PackShares {
   Lanes low[8], high[8];  // by contact
 };
 
-[[gnu::always_inline]] inline void transpose(Lanes (&row)[8]) {
-  Lanes a[8], b[8];
-  for (std::size_t k = 0; k < 8; k += 2) {
-    a[k] = __builtin_shufflevector(row[k], row[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-    a[k + 1] = __builtin_shufflevector(row[k], row[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (std::size_t k = 0; k < 8; k += 4)
-    for (std::size_t l = 0; l < 2; ++l) {
-      b[k + l] = __builtin_shufflevector(a[k + l], a[k + l + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-      b[k + l + 2] = __builtin_shufflevector(a[k + l], a[k + l + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  for (std::size_t l = 0; l < 4; ++l) {
-    row[l] = __builtin_shufflevector(b[l], b[l + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    row[l + 4] = __builtin_shufflevector(b[l], b[l + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-}
-
 // Returns which of the contacts are nearly level; those give their grains f_a r_z/r_z only.
 [[gnu::always_inline]] inline std::uint32_t evaluate(const ContactPack& c, double least_height, PackShares& out) {
   const auto of = [](const ContactPack::Vector& v, std::size_t a) { return Pack::load(v[a].data()); };
@@ -118,26 +101,27 @@ void share_section(const dem::fast::Engine& engine, const RowGrains& grains, std
   w.contacts[section] = 0;
   const Lanes opposite{1, 1, 1, 1, 1, 1, 1, -1};
   const std::size_t count = dem::fast::look_at_contacts(engine, section, packs);
-  PackShares share;
+  PackShares given;
   for (std::size_t p = 0; p < count; ++p) {
     const ContactPack& c = packs[p];
-    const std::uint32_t is_level = evaluate(c, least_height, share);
+    if (p + 1 < count)
+      for (std::size_t k = 0; k < 8; ++k) {
+        ask_for_share(w, packs[p + 1].i[k]);
+        ask_for_share(w, packs[p + 1].j[k]);
+      }
+    const std::uint32_t is_level = evaluate(c, least_height, given);
     w.contacts[section] += __builtin_popcount(c.touching);
     for (std::uint32_t left = c.touching; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(__builtin_ctz(left));
       const std::size_t i = c.i[k], j = c.j[k];
       const bool i_flows = grains.flows(i), j_flows = grains.flows(j);
       if (i_flows && j_flows) {
-        double *to_i = share_of(w, i), *to_j = share_of(w, j);
-        lanes(to_i) += share.low[k];
-        lanes(to_i + 8) += share.high[k];
-        lanes(to_j) += opposite * share.low[k];
-        lanes(to_j + 8) -= share.high[k];
+        share(w, i, given.low[k], given.high[k]);
+        share(w, j, opposite * given.low[k], -given.high[k]);
         if ((is_level >> k & 1) != 0) special.push_back(lane_of(c, k));
         continue;
       }
-      Lanes& fabric = lanes(share_of(w, i_flows ? i : j));
-      fabric += __builtin_shufflevector(share.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8);
+      share(w, i_flows ? i : j, __builtin_shufflevector(given.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8), Lanes{});
       dem::ContactForce contact = lane_of(c, k);
       if (!i_flows) contact = {contact.j, contact.i, -contact.branch, -contact.normal, -contact.force, contact.overlap};
       special.push_back(contact);

@@ -106,13 +106,45 @@ void sort_by_bin(ProfileMoments& p, const Grains& grains, ProfileScratch& w) {
       threads);
 }
 
-// Where the contacts of a grain are summed.
-inline double* share_of(ProfileScratch& w, std::size_t grain) {
-  w.touches[grain] = 1;
-  return w.shares[grain].channel.data();
+// Brings the sums of a grain nearer: they are wherever its number puts them.
+inline void ask_for_share(const ProfileScratch& w, std::size_t grain) {
+  const double* sums = w.shares[grain].channel.data();
+  __builtin_prefetch(sums, 1);
+  __builtin_prefetch(sums + 8, 1);
 }
 
-inline double sum_of(const Lanes& a) { return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7])); }
+// Adds to the sums over the contacts of a grain; they start again with the first contact of a sample.
+inline void share(ProfileScratch& w, std::size_t grain, const Lanes& fabric, const Lanes& stress) {
+  double* sums = w.shares[grain].channel.data();
+  const double known = w.touches[grain];  // 0 or 1: no branch that nobody can foresee
+  w.touches[grain] = 1;
+  lanes(sums) = known * lanes(sums) + fabric;
+  lanes(sums + 8) = known * lanes(sums + 8) + stress;
+}
+
+// Rows to columns.
+[[gnu::always_inline]] inline void transpose(Lanes (&row)[8]) {
+  Lanes a[8], b[8];
+  for (std::size_t k = 0; k < 8; k += 2) {
+    a[k] = __builtin_shufflevector(row[k], row[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    a[k + 1] = __builtin_shufflevector(row[k], row[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (std::size_t k = 0; k < 8; k += 4)
+    for (std::size_t l = 0; l < 2; ++l) {
+      b[k + l] = __builtin_shufflevector(a[k + l], a[k + l + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      b[k + l + 2] = __builtin_shufflevector(a[k + l], a[k + l + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (std::size_t l = 0; l < 4; ++l) {
+    row[l] = __builtin_shufflevector(b[l], b[l + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    row[l + 4] = __builtin_shufflevector(b[l], b[l + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+// Sum of each of eight registers.
+[[gnu::always_inline]] inline Lanes sums_of(Lanes (&row)[8]) {
+  transpose(row);
+  return ((row[0] + row[1]) + (row[2] + row[3])) + ((row[4] + row[5]) + (row[6] + row[7]));
+}
 
 // The grains of one bin, a few at a time: powers of their places first, then what they carry, then what the contacts of those
 // that have any do, sixteen channels at a time so that the sums stay in registers.
@@ -135,14 +167,14 @@ class BinDeposit {
         share_[touched] = item[g];
         touched += w_.touches[i];
         w_.touches[i] = 0;
+        ask_for_share(w_, i);
         return g;
       });
       add_sums(bin + kFabric, touched, [&](std::size_t t, Lanes& a, Lanes& b) {
-        double* share = w_.shares[static_cast<std::size_t>(share_[t])].channel.data();
+        const double* share = w_.shares[static_cast<std::size_t>(share_[t])].channel.data();
         const double v = volume_[t];
         a = lanes(share) * Lanes{v, v, v, v, v, v, 0, 1};
         b = lanes(share + 8);
-        lanes(share) = lanes(share + 8) = Lanes{};
         return grain_[t];
       });
     }
@@ -153,10 +185,11 @@ class BinDeposit {
 
   // Their sums are the moments of the number of grains.
   void take_powers(double* bin, const double* place, std::size_t n) {
-    Lanes number[terms]{};
+    constexpr std::size_t rows = (terms + 7) / 8 * 8;
+    Lanes number[rows]{};
+    constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
     for (std::size_t g = 0; g < n; g += 8) {
-      Lanes p{}, s{};
-      for (std::size_t l = 0; l < 8; ++l) p[l] = g + l < n ? 1 : 0;
+      Lanes p = lane < static_cast<double>(n - g) ? Lanes{} + 1 : Lanes{}, s;
       std::memcpy(&s, place + g, sizeof s);  // readable beyond the last grain
 #pragma GCC unroll 16
       for (std::size_t k = 0; k < terms; ++k, p *= s) {
@@ -164,7 +197,12 @@ class BinDeposit {
         number[k] += p;
       }
     }
-    for (std::size_t k = 0; k < terms; ++k) bin[k * flow_width + kNumber] += sum_of(number[k]);
+    for (std::size_t k = 0; k < terms; k += 8) {
+      Lanes eight[8];
+      std::copy_n(number + k, 8, eight);
+      const Lanes sums = sums_of(eight);
+      for (std::size_t l = 0; l < 8 && k + l < terms; ++l) bin[(k + l) * flow_width + kNumber] += sums[l];
+    }
   }
 
   // Adds sixteen channels of n things: next(k, a, b) gives those of thing k and returns its grain.

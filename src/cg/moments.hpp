@@ -72,7 +72,7 @@ struct alignas(64) ContactShare {
 
 // Memory of the functions below, kept between calls so that nothing is allocated.
 struct ProfileScratch {
-  std::vector<ContactShare> shares;         // of each grain; 0 between calls,
+  std::vector<ContactShare> shares;         // of each grain that touches; of others from an earlier sample
   std::vector<std::uint8_t> touches;        // whether it has contacts; 0 between calls,
   bool unfinished = false;                  // unless they were left by an exception
   std::vector<std::int32_t> bin, count;     // of a grain; by range of grains and bin
