@@ -89,24 +89,39 @@ void brake_detached(const Work& w, Particles& p, const Model& model, double dt) 
   });
 }
 
-// Symplectic midpoint scheme                                                    Minatti & Paris 2015, section 3.5
+// Symplectic Verlet scheme: whole steps with the rates of the middle, where the velocity is a prediction with the last
+// rate. (Half Euler steps of v and rho to the middle and on from there, as the summary of the paper can be read, are of
+// first order, feed sound and change angular momentum.)
+//                                          Minatti & Paris 2015, section 3.5, after Kajtar & Monaghan 2008
 void midpoint_step(State& state, Work& w, const Model& model, double travel) {
   Particles& p = state.particles;
-  const double half = 0.5 * state.dt;
+  const double dt = state.dt, half = 0.5 * dt;
+  const auto dim = static_cast<std::size_t>(model.dim);
   if (outdated(w.pairs, p, model.dim, half)) rebuild(w.pairs, p, model, travel);
   kinematics(w, p, model, Kinematics::density);
-  const auto half_step = [&] {
-    add(p.x, p.v, half, model);
-    add(p.v, p.rate, half, model);
-    add(p.rho, w.density_rate, half);
-  };
-  half_step();
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    for (std::size_t d = 0; d < dim; ++d) {
+      p.x[d][i] += half * p.v[d][i];
+      p.v[d][i] += half * p.rate[d][i];
+    }
+    p.rho[i] += half * w.density_rate[i];
+  });
+  std::vector<double>& first_density_rate = w.force[0];  // scratch of the other schemes
+  std::swap(first_density_rate, w.density_rate);
   kinematics(w, p, model, Kinematics::pairs);
   state.max_kinematic_viscosity = constitutive(w, p, model);
   pair_momentum_rate(w, p, model, true);
   ++w.applications;
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    for (std::size_t d = 0; d < dim; ++d) {
+      p.v[d][i] += dt * w.acceleration[d][i] - half * p.rate[d][i];
+      p.x[d][i] += half * p.v[d][i];
+    }
+    p.rho[i] += dt * w.density_rate[i] - half * first_density_rate[i];
+  });
   std::swap(p.rate, w.acceleration);
-  half_step();
 }
 
 // rho -> pressure -> viscosity -> pressure force -> viscous force (at v(n+1) or v(n)) -> x

@@ -24,11 +24,15 @@ options() {
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
     collisional-axisymmetric-*) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
-    literal-planar-*) # as printed but for the time stepping, see README.md
-      echo "--set scenario.geometry=planar --set numerics.operator=minatti2015 --set numerics.stepping=implicit
+    literal-planar-* | stepped-planar-*) # as printed; `stepped`: the same equations stepped implicitly
+      echo "--set scenario.geometry=planar --set numerics.operator=minatti2015
             --set numerics.shifting=0 --set numerics.volume_correction=0 --set numerics.density_diffusion=0
             --set numerics.base_friction=0 --set numerics.viscosity_rounds=0
-            --set material.compressibility=${printed_kt[row]} --set material.m0=${printed_m0[row]}" ;;
+            --set material.compressibility=${printed_kt[row]} --set material.m0=${printed_m0[row]}"
+      case $1 in
+        literal-*) echo "--set numerics.stepping=minatti2015 --set numerics.cfl=0.5" ;;
+        *) echo "--set numerics.stepping=implicit" ;;
+      esac ;;
     *) echo "unknown run $1" >&2; return 1 ;;
   esac
 }
@@ -36,7 +40,7 @@ options() {
 runs=("$@")
 if [ ${#runs[@]} = 0 ]; then
   for row in 1 2 3 4 5 6; do
-    runs+=(improved-axisymmetric-$row fine-axisymmetric-$row improved-planar-$row literal-planar-$row)
+    runs+=(improved-axisymmetric-$row fine-axisymmetric-$row improved-planar-$row literal-planar-$row stepped-planar-$row)
   done
   runs+=(improved-cylinder-3)
 fi
