@@ -135,7 +135,7 @@ void sequential_step(State& state, Work& w, const Model& model, double travel) {
   add(p.rho, w.density_rate, dt);
   if (model.numerics.volume_correction > 0) correct_volumes(w, p, model, dt);
   state.max_kinematic_viscosity = constitutive(w, p, model);
-  update_volumes(w, p, model);
+  update_volumes(w, p);
   if (corrected)
     corrected_pressure_and_coefficients(w, p, model);
   else

@@ -153,7 +153,10 @@ void gradient_sweep(Work& w, const Particles& p, const Field& v) {
     });
     Matrix<D> s;
     for (std::size_t m = 0; m < s.size(); ++m) s[m] = lane_sum(S[m]);
-    const Matrix<D> L = product<D>(s, matrix_at<D>(w.correction, k));
+    const Matrix<D> B = matrix_at<D>(w.correction, k);
+    const Matrix<D> L = w.coverage[static_cast<std::size_t>(k)] < blend_to
+                            ? gradient<D>(s, matrix_at<D>(w.moment, k), B)
+                            : product<D>(s, B);
     double* to = records.at(k);
     std::copy_n(self, D, to + F::v);
     to[F::sign] = 1;
@@ -215,7 +218,9 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& 
       for (int b = 0; b < D; ++b)
         T[a * D + b] = twice * (0.5 * (L[a * D + b] + L[b * D + a]) - (a == b ? trace : 0)) + (a == b ? mean : 0) -
                        0.5 * lane_sum(H[a * D + b]);
-    const Matrix<D> TB = product<D>(T, matrix_at<D>(w.correction, k));
+    const Matrix<D> B = matrix_at<D>(w.correction, k);
+    const Matrix<D> TB =
+        w.coverage[i] < blend_to ? gradient_adjoint<D>(T, matrix_at<D>(w.moment, k), B) : product<D>(T, B);
     for (std::size_t d = 0; d < D; ++d) force[d][i] = -lane_sum(sum[d]);
     force[0][i] -= (twice * (hoop - trace) + mean) * ir;
     double* to = records.at(k);

@@ -9,8 +9,7 @@
 namespace bagnold::sph {
 namespace {
 
-// B = M^-1, blended to 1 where the neighbourhood is too thin for an inverse to mean anything.
-constexpr double blend_from = 0.3, blend_to = 0.5;
+constexpr double blend_from = 0.3;  // of B = M^-1 to 1, up to blend_to
 
 // Where the sums over the neighbours of one particle lie.
 template <int D, Kinematics what, bool moments>
@@ -173,11 +172,12 @@ void store(Work& w, const Particles& p, const Model& model, std::size_t i, const
     w.concentration[i] = sums[At::concentration];
     for (std::size_t d = 0; d < D; ++d) w.imbalance[d][i] = sums[At::imbalance + static_cast<int>(d)];
     const Matrix<D> B = correction<D>(M, w.coverage[i]);
+    std::copy(M.begin(), M.end(), w.moment.begin() + static_cast<std::ptrdiff_t>(i * D * D));
     std::copy(B.begin(), B.end(), w.correction.begin() + static_cast<std::ptrdiff_t>(i * D * D));
     if constexpr (!At::printed) {
       Matrix<D> S;
       std::copy_n(sums + At::gradient, D * D, S.begin());
-      const Matrix<D> L = product<D>(S, B);
+      const Matrix<D> L = w.coverage[i] < blend_to ? gradient<D>(S, M, B) : product<D>(S, B);
       double divergence = hoop;
       for (int d = 0; d < D; ++d) divergence += L[d * D + d];
       w.density_rate[i] = -p.rho[i] * divergence;
@@ -213,16 +213,19 @@ void sweep(Work& w, const Particles& p, const Model& model) {
 
 }  // namespace
 
-void update_volumes(Work& w, const Particles& p, const Model& model) {
+void update_volumes(Work& w, const Particles& p) {
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     w.volume[i] = p.mass[i] / p.rho[i];
-    w.area[i] = model.axisymmetric ? w.volume[i] * inverse_radius(model, p.x[0][i]) / (2 * M_PI) : w.volume[i];
   });
 }
 
 void kinematics(Work& w, const Particles& p, const Model& model, Kinematics what, bool moments) {
-  update_volumes(w, p, model);
+  update_volumes(w, p);
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    w.area[i] = model.axisymmetric ? w.volume[i] * inverse_radius(model, p.x[0][i]) / (2 * M_PI) : w.volume[i];
+  });
   if (what == Kinematics::corrected) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
       w.r[d].resize(w.pairs.index.size() / Pack::lanes);

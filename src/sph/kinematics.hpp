@@ -4,6 +4,10 @@
 
 namespace bagnold::sph {
 
+// B is M^-1 above this smallest eigenvalue of M; below it is blended to 1, as the neighbourhood becomes too thin for an
+// inverse to mean anything.
+inline constexpr double blend_to = 0.5;
+
 enum class Kinematics {
   density,    // density_rate only (first half of the midpoint step)
   pairs,      // density_rate and gradient as printed: eqs 26, 31
@@ -13,8 +17,9 @@ enum class Kinematics {
 // imbalance.
 void kinematics(Work& work, const Particles& particles, const Model& model, Kinematics what, bool moments = false);
 
-// volume = m/rho and area; call whenever rho or a position changed.
-void update_volumes(Work& work, const Particles& particles, const Model& model);
+// volume = m/rho of a changed rho. Areas stay: the forces of a step must see the gradients B was made for, or rotations
+// would strain.
+void update_volumes(Work& work, const Particles& particles);
 
 // 1/r of an axisymmetric ring; particles on the axis count as a tenth of a spacing away from it.
 inline double inverse_radius(const Model& model, double r) { return 1 / std::max(r, 0.1 * model.spacing); }

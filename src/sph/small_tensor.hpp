@@ -59,13 +59,59 @@ inline Matrix<2> inverse(const Matrix<2>& m) {
   const double d = 1 / (m[0] * m[3] - m[1] * m[2]);
   return {m[3] * d, -m[1] * d, -m[2] * d, m[0] * d};
 }
+inline double determinant(const Matrix<3>& m) {
+  return m[0] * (m[4] * m[8] - m[5] * m[7]) + m[1] * (m[5] * m[6] - m[3] * m[8]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
 inline Matrix<3> inverse(const Matrix<3>& m) {
   const Matrix<3> c{m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
                     m[5] * m[6] - m[3] * m[8], m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
                     m[3] * m[7] - m[4] * m[6], m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
-  const double d = 1 / (m[0] * c[0] + m[1] * c[3] + m[2] * c[6]);
+  const double d = 1 / determinant(m);
   Matrix<3> r = c;
   for (double& x : r) x *= d;
+  return r;
+}
+
+// The rotation v = G r that fits the velocities of neighbours best: S = sum A f v r, M = sum A f r r. S = G M gives G back.
+inline Matrix<2> best_rotation(const Matrix<2>& M, const Matrix<2>& S) {
+  const double rate = (S[2] - S[1]) / (M[0] + M[3] + 1e-300);  // a lone particle does not turn
+  return {0, -rate, rate, 0};
+}
+inline Matrix<3> best_rotation(const Matrix<3>& M, const Matrix<3>& S) {
+  const double trace = M[0] + M[4] + M[8];
+  Matrix<3> inertia;
+  for (std::size_t k = 0; k < 9; ++k) inertia[k] = (k % 4 == 0 ? trace + 1e-90 : 0) - M[k];
+  // A string of particles shows no rotation about itself: any resistance to it will do.
+  if (!(determinant(inertia) > 1e-9 * trace * trace * trace))
+    for (std::size_t k = 0; k < 9; ++k) inertia[k] += M[k];
+  const Matrix<3> K = inverse(inertia);
+  const std::array<double, 3> moment{S[7] - S[5], S[2] - S[6], S[3] - S[1]};
+  std::array<double, 3> w{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) w[a] += K[3 * a + b] * moment[b];
+  return {0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0};
+}
+
+// Where B is not M^-1 the gradient S B of a rotation is not the rotation; what it lacks is added, G (1 - M B) with the best
+// rotation G. The adjoint of S -> gradient(S), of a stress T, is T B + best_rotation(M, T (1 - M B)).
+template <int D>
+inline Matrix<D> rest(const Matrix<D>& M, const Matrix<D>& B) {  // 1 - M B
+  Matrix<D> r = product<D>(M, B);
+  for (int k = 0; k < D * D; ++k) r[k] = (k % (D + 1) == 0 ? 1 : 0) - r[k];
+  return r;
+}
+template <int D>
+inline Matrix<D> gradient(const Matrix<D>& S, const Matrix<D>& M, const Matrix<D>& B) {
+  Matrix<D> L = product<D>(S, B);
+  const Matrix<D> missing = product<D>(best_rotation(M, S), rest<D>(M, B));
+  for (int k = 0; k < D * D; ++k) L[k] += missing[k];
+  return L;
+}
+template <int D>
+inline Matrix<D> gradient_adjoint(const Matrix<D>& T, const Matrix<D>& M, const Matrix<D>& B) {
+  Matrix<D> r = product<D>(T, B);
+  const Matrix<D> G = best_rotation(M, product<D>(T, rest<D>(M, B)));
+  for (int k = 0; k < D * D; ++k) r[k] += G[k];
   return r;
 }
 

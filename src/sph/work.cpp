@@ -6,6 +6,7 @@ void Work::resize(std::int64_t count, int dim) {
   const auto n = static_cast<std::size_t>(count), d = static_cast<std::size_t>(dim);
   for (auto* a : {&volume, &area, &density_rate, &shear_rate, &pressure, &viscosity, &bulk, &coverage, &concentration})
     a->resize(n);
+  moment.resize(n * d * d);
   correction.resize(n * d * d);
   gradient.resize(n * d * d);
   wall.resize(n * static_cast<std::size_t>(dim * (dim + 1) / 2));

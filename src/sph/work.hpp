@@ -22,6 +22,7 @@ struct Work {
   std::vector<double> bulk;                 // bulk viscosity, Pa s
   std::vector<double> coverage;             // smallest eigenvalue of M: 1 inside, 0.5 at a free surface, 0 alone
   std::vector<double> concentration;        // sum A_j W, 1 inside
+  std::vector<double> moment;               // M
   std::vector<double> correction;           // B
   std::vector<double> gradient;             // L
   Field imbalance;                          // sum A_j f r, points where neighbours are missing
