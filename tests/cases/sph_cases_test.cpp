@@ -25,9 +25,10 @@ TEST(Cases, InclineTomlApproachesItsSteadyProfile) {
   EXPECT_LT(u / exact, 1.05);
 }
 
-// The one-dimensional momentum equation for 0.03 m changes by less than 1e-3 a second after 2.6 s.
+// The one-dimensional momentum equation for 0.03 m changes by less than 1e-3 a second after 2.6 s. (With fewer rows than 12
+// the mean velocity itself wavers by as much.)
 TEST(Cases, SteadyTimeIsWhenTheMeanVelocityStopsChanging) {
-  const std::string thin = "--set scenario.height=0.03 --set scenario.length=0.03 ";
+  const std::string thin = "--set scenario.height=0.03 --set scenario.length=0.03 --set scenario.spacing=0.0025 ";
   EXPECT_NEAR(run_continuum("incline.toml", thin + "--set time.end=3.5")["steady_time"], 2.75, 0.5);
   EXPECT_TRUE(run_continuum("incline.toml", thin + "--set time.end=1")["steady_time"].is_null());
 }
