@@ -35,6 +35,15 @@ void add(std::vector<double>& a, const std::vector<double>& b, double factor) {
                [&](std::int64_t i) { a[static_cast<std::size_t>(i)] += factor * b[static_cast<std::size_t>(i)]; });
 }
 
+// D rho/Dt over a step, exact for a constant rate of strain: a loose particle may dilute many times over in one step, and a
+// density below zero would be a volume below zero, whose viscosity drives the flow.
+void advance_density(const Work& w, Particles& p, double dt) {
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    p.rho[i] *= std::exp(dt * w.density_rate[i] / p.rho[i]);
+  });
+}
+
 struct Fastest {
   double v2 = 0;
   Fastest& operator+=(const Fastest& other) {
@@ -62,31 +71,41 @@ double fastest_particle(const State& state, const Model& model) {
   return std::sqrt(v2);
 }
 
-// Particles driven into the floor or over the axis are put back and lose that velocity.
-void keep_inside(Particles& p, const Model& model) {
+// Particles driven over the axis or into the floor are put back and lose that velocity.
+void keep_off_axis(Particles& p, const Model& model) {
   const double least = closest_to_wall * model.spacing;
-  const auto bound = [&](std::size_t d) {
-    for (std::size_t i = 0; i < p.x[d].size(); ++i)
-      if (p.x[d][i] < least) p.x[d][i] = least, p.v[d][i] = std::max(p.v[d][i], 0.0);
-  };
-  if (model.floor) bound(static_cast<std::size_t>(model.vertical()));
-  if (model.axisymmetric) bound(0);
+  for (std::size_t i = 0; i < p.x[0].size(); ++i)
+    if (p.x[0][i] < least) p.x[0][i] = least, p.v[0][i] = std::max(p.v[0][i], 0.0);
 }
 
-// Detached particles on the base carry no pressure, so nothing else would ever stop them.
-void brake_detached(const Work& w, Particles& p, const Model& model, double dt) {
-  constexpr double detached = 0.35, at_base = 0.8;  // coverage; height over dp
+// The floor takes mu(i) times as much momentum along itself as it takes across (Coulomb). No pressure or viscosity would:
+// both vanish between a particle and an image it coincides with. A particle is a layer no gradient resolves, of depth D and mean
+// velocity v, so i = 5/2 v d/(D sqrt(p/rho_s)), the inertial number of a Bagnold profile (Jop et al. 2005).
+void keep_above_floor(const Work& w, Particles& p, const Model& model, double dt) {
+  const double least = closest_to_wall * model.spacing, d = model.material.grain_diameter,
+               rho_s = model.grains().grain_density;
   const auto up = static_cast<std::size_t>(model.vertical());
-  const double most = model.numerics.base_friction * model.static_friction() * std::abs(model.gravity[up]) * dt;
-  parallel_for(p.size(), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (w.coverage[i] > detached || p.x[up][i] > at_base * model.spacing) return;
-    double speed = 0;
-    for (std::size_t d = 0; d < up; ++d) speed += p.v[d][i] * p.v[d][i];
-    speed = std::sqrt(speed);
-    const double left = speed > most ? 1 - most / speed : 0;
-    for (std::size_t d = 0; d < up; ++d) p.v[d][i] *= left;
-  });
+  std::visit(
+      [&](const auto& rheology) {
+        parallel_for(p.size(), [&](std::int64_t k) {
+          const auto i = static_cast<std::size_t>(k);
+          if (p.x[up][i] >= least) return;
+          const double across = std::max(-p.v[up][i], 0.0);
+          p.x[up][i] = least;
+          p.v[up][i] += across;
+          double along = 0;
+          for (std::size_t a = 0; a < up; ++a) along += p.v[a][i] * p.v[a][i];
+          along = std::sqrt(along);
+          if (!(across > 0 && along > 0)) return;
+          const double depth = model.dim == 2 ? std::sqrt(w.area[i]) : std::cbrt(w.volume[i]),
+                       pressure = p.rho[i] * depth * across / dt,
+                       inertial = 2.5 * along * d / (depth * std::sqrt(pressure / rho_s)),
+                       most = model.numerics.base_friction * rheology.mu(inertial) * across,
+                       left = std::max(1 - most / along, 0.0);
+          for (std::size_t a = 0; a < up; ++a) p.v[a][i] *= left;
+        });
+      },
+      model.material.rheology);
 }
 
 // Symplectic Verlet scheme: whole steps with the rates of the middle, where the velocity is a prediction with the last
@@ -132,7 +151,7 @@ void sequential_step(State& state, Work& w, const Model& model, double travel) {
   if (outdated(w.pairs, p, model.dim, 0)) rebuild(w.pairs, p, model, travel);
   kinematics(w, p, model, corrected ? Kinematics::corrected : Kinematics::pairs, true);
   if (model.numerics.density_diffusion > 0) diffuse_density(w, p, model);
-  add(p.rho, w.density_rate, dt);
+  advance_density(w, p, dt);
   if (model.numerics.volume_correction > 0) correct_volumes(w, p, model, dt);
   state.max_kinematic_viscosity = constitutive(w, p, model);
   update_volumes(w, p);
@@ -152,10 +171,10 @@ void sequential_step(State& state, Work& w, const Model& model, double travel) {
       }
     });
   }
-  if (model.numerics.base_friction > 0) brake_detached(w, p, model, dt);
   if (model.numerics.shifting > 0) shift_particles(w, p, model, dt);
   add(p.x, p.v, dt, model);
-  keep_inside(p, model);
+  if (model.axisymmetric) keep_off_axis(p, model);
+  if (model.floor) keep_above_floor(w, p, model, dt);
 }
 
 }  // namespace

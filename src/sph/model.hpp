@@ -29,7 +29,7 @@ struct Numerics {
   double shifting = 0;              // particle shifting, 10 is usual
   double volume_correction = 0;     // pulls the density back to the one of the positions, 1 is usual
   double density_diffusion = 0;     // delta: removes the alternating pressure no gradient sees, 0.1 is usual
-  double base_friction = 0;         // 1: detached particles on the base feel mu_s g
+  double base_friction = 0;         // Coulomb friction of particles the floor stops, over mu(i)
   double cg_tolerance = 1e-3;       // what is left of the momentum balance, rms, over g
   std::int64_t cg_max_iterations = 5000;
   std::int64_t viscosity_rounds = 0;  // implicit: times the viscosity is taken again from the velocity found
@@ -48,7 +48,7 @@ struct Numerics {
               &S::volume_correction, closed(0, 10)),
         field("density_diffusion", "", "delta of the density diffusion (variational operator), 0 for none",
               &S::density_diffusion, closed(0, 1)),
-        field("base_friction", "", "1: detached particles on the base feel mu_s g, 0: they slide", &S::base_friction,
+        field("base_friction", "", "1: particles the floor stops feel friction mu(i), 0: they slide", &S::base_friction,
               closed(0, 1)),
         field("cg_tolerance", "", "implicit: rms acceleration left unbalanced, over g", &S::cg_tolerance, open(0, 1)),
         field("cg_max_iterations", "", "implicit: more is an error", &S::cg_max_iterations, at_least(1)),
@@ -80,6 +80,9 @@ struct Model {
   }
   double phi_max() const {
     return std::visit([](const auto& d) { return d.phi_max; }, material.dilatancy);
+  }
+  double phi_min() const {
+    return std::visit([](const auto& d) { return d.phi_min; }, material.dilatancy);
   }
   double static_friction() const {
     return std::visit([](const auto& r) { return r.static_friction(); }, material.rheology);

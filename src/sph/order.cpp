@@ -134,12 +134,14 @@ double lattice_concentration(const Model& model) {
 }
 
 void correct_volumes(Work& w, Particles& p, const Model& model, double dt) {
-  const double undisturbed = lattice_concentration(model);
+  const double undisturbed = lattice_concentration(model), loosest = model.phi_min() * model.grains().grain_density;
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
+    const double excess = w.concentration[i] / undisturbed - 1;
     if (w.coverage[i] > interior)
-      p.rho[i] *= 1 + (w.concentration[i] / undisturbed - 1) *
-                          std::min(0.5, model.numerics.volume_correction * w.shear_rate[i] * dt);
+      p.rho[i] *= 1 + excess * std::min(0.5, model.numerics.volume_correction * w.shear_rate[i] * dt);
+    else if (excess > 0 && p.rho[i] < loosest)
+      p.rho[i] = std::min(p.rho[i] * (1 + excess), loosest);
   });
 }
 

@@ -8,7 +8,8 @@ namespace bagnold::sph {
 double lattice_concentration(const Model& model);
 
 // rho *= 1 + (C/C_lattice - 1) min(1/2, volume_correction gamma dt) in the interior: where material shears, density
-// follows the volume the positions show.
+// follows the volume the positions show. Elsewhere a particle diluted beyond phi_min whose volume overlaps others (C > C_lattice) is
+// given the density its place leaves it, up to phi_min: tr L of loose particles is a guess, and dilution feeds on itself.
 void correct_volumes(Work& work, Particles& particles, const Model& model, double dt);
 
 // density_rate += 2 delta h c sum A_j f [rho_j - rho_i + (grad rho_i + grad rho_j).r_ij/2]     after Antuono et al. 2010

@@ -140,7 +140,7 @@ TEST(Options, BulkViscosityAloneRemovesTheSoundOfFineParticles) {
   EXPECT_LT(with, 0.01);
 }
 
-// A grain on the base is slowed by the viscosity of its own mirror, but never stopped; Coulomb drag stops it by v0/(mu_s g).
+// No pressure or viscosity acts between a particle on the floor and its own image: only Coulomb friction stops it, by v0/(mu_s g).
 TEST(Options, BaseFrictionAloneStopsADetachedParticle) {
   for (const double share : {0.0, 1.0}) {
     Simulation r{variational(), {}, {}};
@@ -148,14 +148,14 @@ TEST(Options, BaseFrictionAloneStopsADetachedParticle) {
     r.model.numerics.base_friction = share;
     r.state.particles = make_particles(1, 2);
     Particles& p = r.state.particles;
-    p.x[0][0] = 0.5, p.x[1][0] = 0.5 * r.model.spacing, p.v[0][0] = 0.3;
+    p.x[0][0] = 0.5, p.x[1][0] = 0, p.v[0][0] = 0.3;
     p.rho[0] = 400, p.mass[0] = 400 * r.model.spacing * r.model.spacing;
     initialise(r.state, r.work, r.model);
     advance(r, 0.3 / (r.model.static_friction() * 9.81));
     if (share > 0)
       EXPECT_EQ(p.v[0][0], 0);
     else
-      EXPECT_GT(p.v[0][0], 0.02);
+      EXPECT_GT(p.v[0][0], 0.25);
   }
 }
 

@@ -19,7 +19,6 @@ options() {
   echo "--set time.end=${end[row]} --set output.series_every=0.01 --set output.snapshot_every=0.025 --set output.vtk_every=10"
   case $1 in
     improved-axisymmetric-*) ;; # the case as it is
-    fine-axisymmetric-[56]) echo "--set scenario.spacing=${half_dp[row]} --set numerics.cfl=0.3" ;; # fails at 0.4, see README.md
     fine-axisymmetric-*) echo "--set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
