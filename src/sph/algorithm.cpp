@@ -30,10 +30,6 @@ void add(Field& a, const Field& b, double factor, const Model& model) {
       a[d][static_cast<std::size_t>(i)] += factor * b[d][static_cast<std::size_t>(i)];
     });
 }
-void add(std::vector<double>& a, const std::vector<double>& b, double factor) {
-  parallel_for(static_cast<std::int64_t>(a.size()),
-               [&](std::int64_t i) { a[static_cast<std::size_t>(i)] += factor * b[static_cast<std::size_t>(i)]; });
-}
 
 // D rho/Dt over a step, exact for a constant rate of strain: a loose particle may dilute many times over in one step, and a
 // density below zero would be a volume below zero, whose viscosity drives the flow.

@@ -87,7 +87,7 @@ TEST(Positivity, ViscosityOfNegativeVolumesDrives) {
   r.work.viscosity[i] = 1;
   for (const double sign : {1.0, -1.0}) {
     p.rho[i] = sign * std::abs(p.rho[i]);
-    update_volumes(r.work, p, r.model);
+    update_volumes(r.work, p);
     corrected_pressure_and_coefficients(r.work, p, r.model);
     Field v = p.v, force = v;
     v[0][i] = v[1][i] = 1;
