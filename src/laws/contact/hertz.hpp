@@ -21,11 +21,11 @@ struct HertzNormal {
   N alpha;    // damping number, -
   // With x = K sqrt(delta): x delta, alpha sqrt(m_ij x), 3/2 x.
   NormalResponse<N> respond(N overlap, const PairSize<N>& size) const {
-    const N x = N(4.0 / 3) * modulus * sqrt(size.reduced_radius * overlap);
-    return {x * overlap, alpha * (x * rsqrt(x * size.inverse_reduced_mass)), N(1.5) * x};
+    const N x = N(4.0 / 3) * modulus * ieee_sqrt(max(N(0), size.reduced_radius * overlap));
+    return {x * overlap, alpha * ieee_sqrt(x * size.reduced_mass()), N(1.5) * x};
   }
   // Stiffness at the overlap `before` over that at `now` > 0.
-  N stiffness_ratio(N before, N now) const { return sqrt(before / now); }
+  N stiffness_ratio(N before, N now) const { return ieee_sqrt(before / now); }
   N energy(N overlap, const PairSize<N>& size) const {
     return N(8.0 / 15) * modulus * sqrt(size.reduced_radius * overlap) * overlap * overlap;
   }

@@ -76,10 +76,14 @@ PairGeometry<N> pair_geometry(const PairMotion<N, EqualRadii>& m) {
   return g;
 }
 
-// Eq. 9: the spring stretches by the rate and turns with the pair.
+// Eq. 9: the spring turns with the pair and stretches by the rate.
+template <class N>
+Vec3Of<N> turned(const Vec3Of<N>& spring, const PairGeometry<N>& g, N dt) {
+  return spring - (dt * dot(spring, g.v) * g.turn_rate) * g.n;
+}
 template <class N>
 Vec3Of<N> stretched(const Vec3Of<N>& spring, const Vec3Of<N>& rate, const PairGeometry<N>& g, N dt) {
-  return spring + dt * (rate - (dot(spring, g.v) * g.turn_rate) * g.n);
+  return turned(spring, g, dt) + dt * rate;
 }
 
 // Tangent stiffness of the normal law a step ago over that of now. The drift is linear, so the overlap then was
@@ -90,12 +94,16 @@ N earlier_stiffness(const Normal& law, const PairGeometry<N>& g, N dt) {
 }
 
 // A spring of stiffness `now` that was `earlier` times as stiff a step ago: its force is kept while the stiffness grows,
-// its length while it falls, so no energy appears. Returns the energy given up.
+// its length while it falls, so no energy appears.
 template <class N>
-N rescale(Vec3Of<N>& spring, N earlier, N now) {
-  const N factor = min(N(1), earlier), length2 = dot(spring, spring);
-  spring = factor * spring;
-  return N(0.5) * now * length2 * (earlier - factor * factor);
+N rescaling(N earlier) {
+  return min(N(1), earlier);
+}
+// The energy it gives up by that.
+template <class N>
+N rescaling_loss(const Vec3Of<N>& spring, N earlier, N now) {
+  const N factor = rescaling(earlier);
+  return N(0.5) * now * dot(spring, spring) * (earlier - factor * factor);
 }
 
 // Energy a slider takes that cuts a spring from `trial` to `cut`: the mean force over the step (its energy at half-step
@@ -114,10 +122,14 @@ void add_tangential(const PairLaw<Normal, Tangential, Rolling>& law, const PairG
   Vec3Of<N> before = spring;
   if constexpr (Advance) {
     if constexpr (!Normal::constant_stiffness && !Tangential::constant_stiffness) {
-      out.slide_loss = out.slide_loss + rescale(spring, earlier_stiffness(law.normal, g, dt), kt);
-      before = spring;
+      const N earlier = earlier_stiffness(law.normal, g, dt);
+      out.slide_loss = out.slide_loss + rescaling_loss(spring, earlier, kt);
+      before = rescaling(earlier) * spring;
+      spring =
+          rescaling(earlier) * turned(spring, g, dt) + dt * g.slip;  // turned first: that need not wait for the roots
+    } else {
+      spring = stretched(spring, g.slip, g, dt);
     }
-    spring = stretched(spring, g.slip, g, dt);
   }
   const Vec3Of<N> dashpot = gamma * g.slip;
   Vec3Of<N> pull = kt * spring + dashpot;  // minus the tangential force
@@ -148,10 +160,13 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
   Vec3Of<N> before = roll;
   if constexpr (Advance) {
     if constexpr (!Normal::constant_stiffness) {
-      out.roll_loss = out.roll_loss + rescale(roll, earlier_stiffness(law.normal, g, dt), kr);
-      before = roll;
+      const N earlier = earlier_stiffness(law.normal, g, dt);
+      out.roll_loss = out.roll_loss + rescaling_loss(roll, earlier, kr);
+      before = rescaling(earlier) * roll;
+      roll = rescaling(earlier) * turned(roll, g, dt) + dt * g.spin;
+    } else {
+      roll = stretched(roll, g.spin, g, dt);
     }
-    roll = stretched(roll, g.spin, g, dt);
   }
   const N limit = law.rolling.limit(out.normal, size), trial2 = kr * kr * dot(roll, roll);
   // A spring at its limit slides, also when it is read again after having been cut to it.
