@@ -1,7 +1,6 @@
 // Gathering from inside the fast engine: grains from its rows, contacts from its lists.
+#include <array>
 #include <numbers>
-
-#include <omp.h>
 
 #include "cg/gather.hpp"
 #include "core/simd.hpp"
@@ -31,8 +30,11 @@ class RowGrains {
 
   double z(std::size_t k) const { return position_[dem::fast::position_doubles * k + 2]; }
   double diameter(std::size_t k) const { return 2 * position_[dem::fast::position_doubles * k + 3]; }
-  bool flows(std::size_t k) const { return velocity_[dem::fast::velocity_doubles * k + 7] != 0; }
 
+  void ask(std::size_t k) const {
+    __builtin_prefetch(velocity_ + dem::fast::velocity_doubles * k);
+    __builtin_prefetch(force_ + dem::fast::force_doubles * k);
+  }
   [[gnu::always_inline]] void carry(std::size_t k, Memo& memo, Lanes& a, Lanes& b) const {
     const double *v = velocity_ + dem::fast::velocity_doubles * k, *f = force_ + dem::fast::force_doubles * k;
     if (f[3] != memo.inverse_mass || f[7] != memo.inverse_inertia || v[3] != memo.radius) renew(memo, v, f);
@@ -92,39 +94,46 @@ dem::ContactForce lane_of(const ContactPack& c, std::size_t k) {
           c.overlap[k]};
 }
 
-// Gives every grain of a section its share of the contacts; those with the base and those nearly level are put aside.
-void share_section(const dem::fast::Engine& engine, const RowGrains& grains, std::size_t section, double least_height,
-                   ProfileScratch& w) {
-  auto& packs = w.packs[static_cast<std::size_t>(omp_get_thread_num())];
-  auto& special = w.special[section];
-  special.clear();
-  w.contacts[section] = 0;
+void ask_for_shares(const ProfileScratch& w, const ContactPack& c) {
+  for (std::size_t k = 0; k < 8; ++k) {
+    ask_for_share(w, c.i[k]);
+    ask_for_share(w, c.j[k]);
+  }
+}
+
+// Gives the grains of eight contacts their shares; contacts with the base and those nearly level are put aside.
+void share_pack(const ContactPack& c, double least_height, std::vector<dem::ContactForce>& special, ProfileScratch& w) {
   const Lanes opposite{1, 1, 1, 1, 1, 1, 1, -1};
-  const std::size_t count = dem::fast::look_at_contacts(engine, section, packs);
   PackShares given;
-  for (std::size_t p = 0; p < count; ++p) {
-    const ContactPack& c = packs[p];
-    if (p + 1 < count)
-      for (std::size_t k = 0; k < 8; ++k) {
-        ask_for_share(w, packs[p + 1].i[k]);
-        ask_for_share(w, packs[p + 1].j[k]);
-      }
-    const std::uint32_t is_level = evaluate(c, least_height, given);
-    w.contacts[section] += __builtin_popcount(c.touching);
-    for (std::uint32_t left = c.touching; left != 0; left &= left - 1) {
-      const auto k = static_cast<std::size_t>(__builtin_ctz(left));
-      const std::size_t i = c.i[k], j = c.j[k];
-      const bool i_flows = grains.flows(i), j_flows = grains.flows(j);
-      if (i_flows && j_flows) {
-        share(w, i, given.low[k], given.high[k]);
-        share(w, j, opposite * given.low[k], -given.high[k]);
-        if ((is_level >> k & 1) != 0) special.push_back(lane_of(c, k));
-        continue;
-      }
-      share(w, i_flows ? i : j, __builtin_shufflevector(given.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8), Lanes{});
-      dem::ContactForce contact = lane_of(c, k);
-      if (!i_flows) contact = {contact.j, contact.i, -contact.branch, -contact.normal, -contact.force, contact.overlap};
-      special.push_back(contact);
+  const std::uint32_t is_level = evaluate(c, least_height, given);
+  for (std::uint32_t left = c.touching; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(__builtin_ctz(left));
+    const std::size_t i = c.i[k], j = c.j[k];
+    const bool i_flows = w.flows[i] != 0, j_flows = w.flows[j] != 0;
+    if (i_flows && j_flows) {
+      share(w, i, given.low[k], given.high[k]);
+      share(w, j, opposite * given.low[k], -given.high[k]);
+      if ((is_level >> k & 1) != 0) special.push_back(lane_of(c, k));
+      continue;
+    }
+    share(w, i_flows ? i : j, __builtin_shufflevector(given.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8), Lanes{});
+    dem::ContactForce contact = lane_of(c, k);
+    if (!i_flows) contact = {contact.j, contact.i, -contact.branch, -contact.normal, -contact.force, contact.overlap};
+    special.push_back(contact);
+  }
+}
+
+void share_section(const dem::fast::Engine& engine, std::size_t section, double least_height, ProfileScratch& w) {
+  w.special[section].clear();
+  w.contacts[section] = 0;
+  std::array<ContactPack, 16> packs;
+  std::size_t from = 0;
+  while (const std::size_t count = dem::fast::look_at_contacts(engine, section, from, packs)) {
+    ask_for_shares(w, packs[0]);
+    for (std::size_t p = 0; p < count; ++p) {
+      if (p + 1 < count) ask_for_shares(w, packs[p + 1]);
+      w.contacts[section] += __builtin_popcount(packs[p].touching);
+      share_pack(packs[p], least_height, w.special[section], w);
     }
   }
 }
@@ -139,7 +148,8 @@ void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch
   sort_by_bin(p, grains, w);
 
   prepare_shares(w, engine.rows.size());
-  w.packs.resize(std::max(w.packs.size(), static_cast<std::size_t>(threads())));
+  w.flows.assign(engine.rows.size(), 0);
+  for (const auto& [begin, end] : w.ranges) std::fill(w.flows.begin() + begin, w.flows.begin() + end, std::uint8_t{1});
   w.special.resize(sections);
   w.contacts.resize(sections);
   const double least_height = level(p);
@@ -147,9 +157,7 @@ void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch
   const auto share_every_other = [&](std::size_t first, std::size_t last) {
     parallel_for(
         static_cast<std::int64_t>((last - first + 1) / 2),
-        [&](std::int64_t n) {
-          share_section(engine, grains, first + 2 * static_cast<std::size_t>(n), least_height, w);
-        },
+        [&](std::int64_t n) { share_section(engine, first + 2 * static_cast<std::size_t>(n), least_height, w); },
         engine.grain.size() >= 500);
   };
   share_every_other(0, sections - sections % 2);
@@ -160,7 +168,7 @@ void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch
     p.contacts += static_cast<double>(w.contacts[s]);
     for (const dem::ContactForce& c : w.special[s]) {
       const auto i = static_cast<std::size_t>(c.i);
-      if (grains.flows(static_cast<std::size_t>(c.j)))
+      if (w.flows[static_cast<std::size_t>(c.j)] != 0)
         add_level_contact(p, grains.z(i), c);
       else
         add_base_contact(p, grains.z(i), grains.diameter(i), c);

@@ -33,6 +33,7 @@ double level(const ProfileMoments& p);  // |r_z| below which a contact is
 void prepare_shares(ProfileScratch& w, std::size_t grains);
 
 inline constexpr std::size_t flow_width = kFlowing;
+inline constexpr std::size_t look_ahead = 16;  // grains: what they carry is asked for that much before it is needed
 
 // Sorts the grains in w.ranges by bin. Their order inside a bin is that of the ranges.
 template <class Grains>
@@ -42,7 +43,7 @@ void sort_by_bin(ProfileMoments& p, const Grains& grains, ProfileScratch& w) {
   const std::size_t items = w.ranges.empty() ? 0 : w.ranges.back().second;
   w.bin.resize(items);
   w.place.resize(items);
-  w.order.resize(items);
+  w.order.resize(items + look_ahead);
   w.sorted_place.resize(items + 8);
   w.count.resize(3 * w.ranges.size());
   const bool threads = items >= 500;
@@ -159,19 +160,24 @@ class BinDeposit {
       const std::int32_t* item = w_.order.data() + first;
       take_powers(bin, w_.sorted_place.data() + first, n);
       std::size_t touched = 0;  // grains with contacts
+      std::uint8_t* const touches = w_.touches.data();
+      const ContactShare* const shares = w_.shares.data();
       add_sums(bin, n, [&](std::size_t g, Lanes& a, Lanes& b) {
         const auto i = static_cast<std::size_t>(item[g]);
+        if constexpr (requires { grains_.ask(i); }) grains_.ask(static_cast<std::size_t>(item[g + look_ahead]));
         grains_.carry(i, memo_, a, b);
         volume_[touched] = memo_.volume;
         grain_[touched] = g;
         share_[touched] = item[g];
-        touched += w_.touches[i];
-        w_.touches[i] = 0;
-        ask_for_share(w_, i);
+        const std::size_t sums = touches[i] * i;  // of another grain if it has none
+        touched += touches[i];
+        touches[i] = 0;
+        __builtin_prefetch(shares[sums].channel.data());
+        __builtin_prefetch(shares[sums].channel.data() + 8);
         return g;
       });
       add_sums(bin + kFabric, touched, [&](std::size_t t, Lanes& a, Lanes& b) {
-        const double* share = w_.shares[static_cast<std::size_t>(share_[t])].channel.data();
+        const double* share = shares[share_[t]].channel.data();
         const double v = volume_[t];
         a = lanes(share) * Lanes{v, v, v, v, v, v, 0, 1};
         b = lanes(share + 8);
@@ -181,25 +187,28 @@ class BinDeposit {
   }
 
  private:
-  static constexpr std::size_t most = 32;
+  static constexpr std::size_t most = 64;
 
-  // Their sums are the moments of the number of grains.
+  // Their sums are the moments of the number of grains; that of power 0 is known.
   void take_powers(double* bin, const double* place, std::size_t n) {
-    constexpr std::size_t rows = (terms + 7) / 8 * 8;
-    Lanes number[rows]{};
+    constexpr std::size_t rows = (terms - 1 + 7) / 8 * 8;
+    Lanes number[rows]{};  // [k - 1]: of power k
     constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
     for (std::size_t g = 0; g < n; g += 8) {
       Lanes p = lane < static_cast<double>(n - g) ? Lanes{} + 1 : Lanes{}, s;
       std::memcpy(&s, place + g, sizeof s);  // readable beyond the last grain
+      lanes(&power_[0][g]) = p;
 #pragma GCC unroll 16
-      for (std::size_t k = 0; k < terms; ++k, p *= s) {
+      for (std::size_t k = 1; k < terms; ++k) {
+        p *= s;
         lanes(&power_[k][g]) = p;
-        number[k] += p;
+        number[k - 1] += p;
       }
     }
-    for (std::size_t k = 0; k < terms; k += 8) {
+    bin[kNumber] += static_cast<double>(n);
+    for (std::size_t k = 1; k < terms; k += 8) {
       Lanes eight[8];
-      std::copy_n(number + k, 8, eight);
+      std::copy_n(number + k - 1, 8, eight);
       const Lanes sums = sums_of(eight);
       for (std::size_t l = 0; l < 8 && k + l < terms; ++l) bin[(k + l) * flow_width + kNumber] += sums[l];
     }

@@ -75,13 +75,13 @@ struct ProfileScratch {
   std::vector<ContactShare> shares;         // of each grain that touches; of others from an earlier sample
   std::vector<std::uint8_t> touches;        // whether it has contacts; 0 between calls,
   bool unfinished = false;                  // unless they were left by an exception
+  std::vector<std::uint8_t> flows;          // whether it flows, of each row of the engine
   std::vector<std::int32_t> bin, count;     // of a grain; by range of grains and bin
   std::vector<std::int32_t> begin, order;   // by bin; grains in the order of their bins
   std::vector<double> place, sorted_place;  // s of a grain in its bin; the same in that order
   std::vector<std::pair<std::size_t, std::size_t>> ranges;
-  std::vector<dem::fast::Aligned<dem::fast::ContactPack>> packs;  // by thread
-  std::vector<std::vector<dem::ContactForce>> special;            // by section: with the base, or nearly level
-  std::vector<std::int64_t> contacts;                             // by section
+  std::vector<std::vector<dem::ContactForce>> special;  // by section: with the base, or nearly level
+  std::vector<std::int64_t> contacts;                   // by section
 };
 
 ProfileMoments make_moments(const laws::CgKernels::Any& kernel, const Lattice& lattice, const Box& box);

@@ -1,6 +1,7 @@
 // Looking at a run from inside: nobody is disturbed, and what is seen is the state at that step.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <vector>
 
@@ -79,19 +80,21 @@ TEST(Watch, RowsAndContactsAreThoseOfTheState) {
         const double* at = &engine.rows.position[fast::position_doubles * engine.row[i]];
         x.push_back({at[0], at[1], at[2]});
       }
-      fast::Aligned<fast::ContactPack> packs;
       for (std::size_t section = 0; section < engine.sections.size(); ++section) {
-        const std::size_t count = fast::look_at_contacts(engine, section, packs);
-        for (std::size_t p = 0; p < count; ++p)
-          for (std::size_t k = 0; k < 8; ++k) {
-            if ((packs[p].touching >> k & 1) == 0) continue;
-            const auto lane = [k](const fast::ContactPack::Vector& a) { return Vec3{a[0][k], a[1][k], a[2][k]}; };
-            const int i = engine.grain[packs[p].i[k]], j = engine.grain[packs[p].j[k]];
-            const double sign = i < j ? 1 : -1;
-            met[{std::min(i, j), std::max(i, j)}] = {sign * lane(packs[p].branch), sign * lane(packs[p].normal),
-                                                     sign * lane(packs[p].force)};
-            overlaps += packs[p].overlap[k];
-          }
+        std::array<fast::ContactPack, 3> packs;
+        std::size_t from = 0;
+        while (const std::size_t count = fast::look_at_contacts(engine, section, from, packs)) {
+          for (std::size_t p = 0; p < count; ++p)
+            for (std::size_t k = 0; k < 8; ++k) {
+              if ((packs[p].touching >> k & 1) == 0) continue;
+              const auto lane = [k](const fast::ContactPack::Vector& a) { return Vec3{a[0][k], a[1][k], a[2][k]}; };
+              const int i = engine.grain[packs[p].i[k]], j = engine.grain[packs[p].j[k]];
+              const double sign = i < j ? 1 : -1;
+              met[{std::min(i, j), std::max(i, j)}] = {sign * lane(packs[p].branch), sign * lane(packs[p].normal),
+                                                       sign * lane(packs[p].force)};
+              overlaps += packs[p].overlap[k];
+            }
+        }
       }
     };
     advance(s, material.laws, 321, watch);

@@ -16,15 +16,15 @@ void put(const Vec3Of<Lanes>& a, ContactPack::Vector& to) {
 
 // As Kernel::act, with nothing advanced and nothing added.
 template <class Tables, bool EqualRadii, bool OneKind>
-[[gnu::flatten]] std::size_t look(const Engine& engine, const Section& section, const Tables& tables,
-                                  Aligned<ContactPack>& out) {
+[[gnu::flatten]] std::size_t look(const Engine& engine, const Section& section, const Tables& tables, std::size_t& from,
+                                  std::span<ContactPack> out) {
   using K = Kernel<Tables, EqualRadii, OneKind>;
   const double *position = engine.rows.position.data(), *velocity = engine.rows.velocity.data();
   const Lanes zero = 0.0;
   const Vec3Of<Lanes> nothing{zero, zero, zero};
   auto law = pack_laws(tables, [&](std::size_t c) { return Lanes(engine.constants[c]); });
-  std::size_t count = 0;
-  for (std::size_t p = 0; p < section.inner.count; p += batch) {
+  std::size_t count = 0, p = from;
+  for (; p < section.inner.count && count < out.size(); p += batch) {
     const Offset *i = section.inner.i.data() + p, *j = section.inner.j.data() + p;
     const Separation apart = separation(position, i, j);
     const RelativeMotion moving = relative_motion(velocity, i, j);
@@ -56,20 +56,19 @@ template <class Tables, bool EqualRadii, bool OneKind>
     }
     pack.touching = touching;
   }
+  from = p;
   return count;
 }
 
 }  // namespace
 
-std::size_t look_at_contacts(const Engine& engine, std::size_t s, Aligned<ContactPack>& out) {
+std::size_t look_at_contacts(const Engine& engine, std::size_t s, std::size_t& from, std::span<ContactPack> out) {
   const Section& section = engine.sections[s];
-  const std::size_t most = (section.inner.count + batch - 1) / batch;
-  if (out.size() < most) out.resize(most + most / 4);
   return with_laws(engine.laws, [&](const auto& tables) {
     using T = std::decay_t<decltype(tables)>;
-    if (!engine.one_kind) return look<T, false, false>(engine, section, tables, out);
-    if (!engine.equal_radii) return look<T, false, true>(engine, section, tables, out);
-    return look<T, true, true>(engine, section, tables, out);
+    if (!engine.one_kind) return look<T, false, false>(engine, section, tables, from, out);
+    if (!engine.equal_radii) return look<T, false, true>(engine, section, tables, from, out);
+    return look<T, true, true>(engine, section, tables, from, out);
   });
 }
 

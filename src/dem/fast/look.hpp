@@ -3,7 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "dem/fast/rows.hpp"
 
@@ -21,7 +21,8 @@ struct ContactPack {
 };
 
 // The contacts of a section; forces are those of the last evaluation, to round-off. Pairs apart may be among them.
-// Returns how many packs it wrote to the front of `out`, which grows where it has to.
-std::size_t look_at_contacts(const Engine& engine, std::size_t section, Aligned<ContactPack>& out);
+// A few packs at a time, so that they need not leave the nearest cache: begins at pair `from` (0, then where the last call
+// left it), fills `out` and returns how many packs it holds, 0 at the end.
+std::size_t look_at_contacts(const Engine& engine, std::size_t section, std::size_t& from, std::span<ContactPack> out);
 
 }  // namespace bagnold::dem::fast
