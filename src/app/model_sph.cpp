@@ -12,6 +12,7 @@
 #include "io/hdf5.hpp"
 #include "io/vtk.hpp"
 #include "sph/constitutive.hpp"
+#include "sph/energy.hpp"
 #include "sph/interpolate.hpp"
 #include "sph/observe.hpp"
 
@@ -27,6 +28,7 @@ class SphModel final : public Model {
     state_.particles =
         on_plane() ? make_particles(in_.plane, in_.model) : make_particles(in_.column, in_.geometry, in_.model);
     initialise(state_, work_, in_.model);
+    state_.keep_ledger = in_.energy_ledger;
   }
 
   std::string_view scenario() const override { return in_.scenario; }
@@ -55,34 +57,40 @@ class SphModel final : public Model {
   void restored() override { restore(state_, work_, in_.model); }
 
   std::vector<io::Column> series_columns() const override {
+    std::vector<io::Column> columns{{"t", "s", "time"}, {"dt", "s", "step"}};
+    const auto add = [&](std::initializer_list<io::Column> more) { columns.insert(columns.end(), more); };
     if (on_plane())
-      return {{"t", "s", "time"},
-              {"dt", "s", "step"},
-              {"kinetic_energy", "J/m", "sum m v^2/2"},
-              {"u_mean", "m/s", "mean velocity down the slope"},
-              {"u_max", "m/s", "fastest particle"},
-              {"max_inertial_number", "", "largest i inside the flow so far"}};
-    return {{"t", "s", "time"},
-            {"dt", "s", "step"},
-            {"kinetic_energy", "J", "sum m v^2/2 (J/m planar)"},
-            {"front", "m", "reach of the connected material"},
-            {"front_raw", "m", "reach of the farthest particle"},
-            {"front_layer", "m", "reach of the layer at least a grain, and half a particle, deep"},
-            {"height", "m", "of the connected material"},
-            {"speed_rms", "m/s", "root mean square, by mass: the creep of a deposit"},
-            {"max_inertial_number", "", "largest i inside the flow so far"}};
+      add({{"kinetic_energy", "J/m", "sum m v^2/2"},
+           {"u_mean", "m/s", "mean velocity down the slope"},
+           {"u_max", "m/s", "fastest particle"},
+           {"max_inertial_number", "", "largest i inside the flow so far"}});
+    else
+      add({{"kinetic_energy", "J", "sum m v^2/2 (J/m planar)"},
+           {"front", "m", "reach of the connected material"},
+           {"front_raw", "m", "reach of the farthest particle"},
+           {"front_layer", "m", "reach of the layer at least a grain, and half a particle, deep"},
+           {"height", "m", "of the connected material"},
+           {"speed_rms", "m/s", "root mean square, by mass: the creep of a deposit"},
+           {"max_inertial_number", "", "largest i inside the flow so far"}});
+    if (state_.keep_ledger)
+      for (const LedgerEntry& e : ledger()) columns.push_back({e.name, on_plane() ? "J/m" : "J", e.meaning});
+    return columns;
   }
   std::vector<double> series_row() override {
     refresh(state_, work_, in_.model);
     max_i_ = std::max(max_i_, max_inertial_number(state_, work_, in_.model));
     const double energy = kinetic_energy(state_, in_.model);
+    std::vector<double> row{state_.time, state_.dt, energy};
     if (on_plane()) {
       const auto& u = state_.particles.v[0];
-      return {state_.time, state_.dt, energy, mean_velocity(), *std::max_element(u.begin(), u.end()), max_i_};
+      row.insert(row.end(), {mean_velocity(), *std::max_element(u.begin(), u.end()), max_i_});
+    } else {
+      const sph::Front front = find_front(state_, work_, in_.model);
+      row.insert(row.end(), {front.connected, front.raw, front.layer, front.height, rms_speed(energy), max_i_});
     }
-    const sph::Front front = find_front(state_, work_, in_.model);
-    return {state_.time,  state_.dt,         energy, front.connected, front.raw, front.layer,
-            front.height, rms_speed(energy), max_i_};
+    if (state_.keep_ledger)
+      for (const LedgerEntry& e : ledger()) row.push_back(e.value);
+    return row;
   }
 
   std::string progress() override {
@@ -161,6 +169,11 @@ class SphModel final : public Model {
     summary["particle_steps_per_s"] = wall_s > 0 ? particle_steps_ / wall_s : NAN;
     summary["force_evaluations"] = state_.force_evaluations;
     summary["max_inertial_number"] = max_i;
+    if (state_.keep_ledger) {
+      auto& energy = summary["energy"];
+      energy["kinetic_energy"] = kinetic_energy(state_, in_.model);
+      for (const LedgerEntry& e : ledger()) energy[e.name] = e.value;
+    }
     if (on_plane()) {
       const auto flow = steady_flow(in_.plane, in_.model);
       constexpr int cells = 200;  // of the one-dimensional transient
@@ -215,6 +228,28 @@ class SphModel final : public Model {
     std::vector<Vec3> x, v;
     std::vector<double> speed, i;
   };
+  struct LedgerEntry {
+    const char* name;
+    double value;
+    const char* meaning;
+  };
+  std::vector<LedgerEntry> ledger() const {
+    const sph::Ledger& l = state_.ledger;
+    return {
+        {"potential_energy", potential_energy(state_, in_.model), "-sum m g.x"},
+        {"elastic_energy", elastic_energy(state_, in_.model), "of squeezed grains"},
+        {"gravity_work", l.gravity, "done by gravity since t = 0"},
+        {"pressure_work", l.pressure, "done against pressure: squeezes grains, dilates"},
+        {"lost_friction", l.friction, "to the viscosity of the law"},
+        {"lost_bulk", l.bulk, "to bulk viscosity"},
+        {"lost_residual", l.residual, "to residual viscosity; printed operator: to its stress less that of the law"},
+        {"lost_artificial", l.artificial, "to artificial viscosity"},
+        {"lost_stepping", l.stepping, "to the finite step"},
+        {"lost_walls", l.walls, "to base friction and being put back"},
+        {"displaced", l.displaced, "potential energy gained by shifting and being put back"},
+        {"diffusion_work", l.diffusion, "of density diffusion and volume correction, in compression"},
+        {"ledger_residual", ledger_residual(state_, in_.model), "gravity_work - pressure_work - lost - kinetic"}};
+  }
   bool on_plane() const { return in_.scenario == "inclined_plane"; }
   double mean_velocity() const { return momentum(state_, in_.model)[0] / total_mass(state_); }
   void watch_steadiness() {

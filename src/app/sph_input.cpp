@@ -42,6 +42,7 @@ SphInput read_sph(config::Case& input) {
                                             : scenario::ColumnGeometry::cylinder;
     set_geometry(in.column, in.geometry, in.model);
   }
+  in.energy_ledger = root.child("output").get<bool>("energy_ledger", false);
   in.end = root.child("time").get<double>("end", std::nullopt, positive(), "s");
   return in;
 }

@@ -17,6 +17,7 @@ struct SphInput {
   scenario::ColumnGeometry geometry = scenario::ColumnGeometry::planar;
   sph::Model model;
   double end = 0;
+  bool energy_ledger = false;
 };
 SphInput read_sph(config::Case& input);
 

@@ -8,9 +8,11 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "sph/constitutive.hpp"
+#include "sph/energy.hpp"
 #include "sph/forces.hpp"
 #include "sph/implicit.hpp"
 #include "sph/kinematics.hpp"
+#include "sph/observe.hpp"
 #include "sph/order.hpp"
 
 namespace bagnold::sph {
@@ -128,6 +130,7 @@ void midpoint_step(State& state, Work& w, const Model& model, double travel) {
   state.max_kinematic_viscosity = constitutive(w, p, model);
   pair_momentum_rate(w, p, model, true);
   ++w.applications;
+  if (state.keep_ledger) separate_forces(w, p, model);
   parallel_for(p.size(), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     for (std::size_t d = 0; d < dim; ++d) {
@@ -137,6 +140,21 @@ void midpoint_step(State& state, Work& w, const Model& model, double travel) {
     p.rho[i] += dt * w.density_rate[i] - half * first_density_rate[i];
   });
   std::swap(p.rate, w.acceleration);
+  if (state.keep_ledger) enter_printed_step(state, w, model);
+}
+
+// Continuity, with what diffuses and what pulls rho back to the positions.
+void change_densities(State& state, Work& w, const Model& model) {
+  Particles& p = state.particles;
+  const double dt = state.dt, flow = state.keep_ledger ? compression_power(w, p, model) : 0;
+  if (model.numerics.density_diffusion > 0) diffuse_density(w, p, model);
+  if (state.keep_ledger) state.ledger.diffusion += dt * (compression_power(w, p, model) - flow);
+  advance_density(w, p, dt);
+  if (model.numerics.volume_correction > 0) {
+    const std::vector<double> before = state.keep_ledger ? p.rho : std::vector<double>{};
+    correct_volumes(w, p, model, dt);
+    if (state.keep_ledger) state.ledger.diffusion += compression_work(before, p, model);
+  }
 }
 
 // rho -> pressure -> viscosity -> pressure force -> viscous force (at v(n+1) or v(n)) -> x
@@ -146,9 +164,7 @@ void sequential_step(State& state, Work& w, const Model& model, double travel) {
   const bool corrected = model.corrected();
   if (outdated(w.pairs, p, model.dim, 0)) rebuild(w.pairs, p, model, travel);
   kinematics(w, p, model, corrected ? Kinematics::corrected : Kinematics::pairs, true);
-  if (model.numerics.density_diffusion > 0) diffuse_density(w, p, model);
-  advance_density(w, p, dt);
-  if (model.numerics.volume_correction > 0) correct_volumes(w, p, model, dt);
+  change_densities(state, w, model);
   state.max_kinematic_viscosity = constitutive(w, p, model);
   update_volumes(w, p);
   if (corrected)
@@ -167,10 +183,12 @@ void sequential_step(State& state, Work& w, const Model& model, double travel) {
       }
     });
   }
+  if (state.keep_ledger) enter_forces(state, w, model);
   if (model.numerics.shifting > 0) shift_particles(w, p, model, dt);
   add(p.x, p.v, dt, model);
   if (model.axisymmetric) keep_off_axis(p, model);
   if (model.floor) keep_above_floor(w, p, model, dt);
+  if (state.keep_ledger) enter_displacements(state, model);
 }
 
 }  // namespace
@@ -214,6 +232,7 @@ void initialise(State& state, Work& w, const Model& model) {
   check(model);
   rebuild(w.pairs, state.particles, model, 0);
   refresh(state, w, model);
+  state.ledger.start = kinetic_energy(state, model);
   state.max_kinematic_viscosity = constitutive(w, state.particles, model);
 }
 

@@ -26,8 +26,8 @@ struct StressRecord {
   static constexpr int area = 0, T = 1, size = T + D * D;
 };
 
-template <int D>
-auto& gradient_records(Work& w) {
+template <int D, class W>
+auto& gradient_records(W& w) {
   if constexpr (D == 2)
     return w.slim2;
   else
@@ -248,6 +248,22 @@ void read_shear_rate(Work& w, const Particles& p, const Model& model, const Fiel
   });
 }
 
+template <int D>
+LawDissipation sum_dissipation(const Work& w, const Particles& p, const Model& model, const Field& v) {
+  const auto& records = gradient_records<D>(w);
+  return parallel_sum<LawDissipation>(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    Matrix<D> L;
+    std::copy_n(records.at(k) + GradientRecord<D>::L, D * D, L.begin());
+    const double hoop = model.axisymmetric ? v[0][i] * inverse_radius(model, p.x[0][i]) : 0,
+                 rate = shear_rate<D>(L, hoop);
+    double trace = hoop;
+    for (int d = 0; d < D; ++d) trace += L[d * D + d];
+    return LawDissipation{w.viscosity[i] * w.volume[i] * (rate * rate - 2 * trace * trace / 3),
+                          w.bulk[i] * w.volume[i] * trace * trace};
+  });
+}
+
 // Third sweep: force of the stresses of both particles.
 template <int D>
 void force_sweep(Work& w, const Particles& p, Field& force) {
@@ -296,6 +312,10 @@ void corrected_shear_rate(Work& w, const Particles& p, const Model& model, const
     gradient_sweep<2>(w, p, v), read_shear_rate<2>(w, p, model, v);
   else
     gradient_sweep<3>(w, p, v), read_shear_rate<3>(w, p, model, v);
+}
+
+LawDissipation corrected_dissipation(const Work& w, const Particles& p, const Model& model, const Field& v) {
+  return model.dim == 2 ? sum_dissipation<2>(w, p, model, v) : sum_dissipation<3>(w, p, model, v);
 }
 
 void corrected_viscous_force(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {

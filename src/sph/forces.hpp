@@ -17,6 +17,16 @@ void pair_coefficients(Work& work, const Particles& particles, const Model& mode
 void corrected_viscous_force(Work& work, const Particles& particles, const Model& model, const Field& v, Field& force);
 // shear_rate of velocities v at the positions kinematics(corrected) saw.
 void corrected_shear_rate(Work& work, const Particles& particles, const Model& model, const Field& v);
+// What the law takes of velocities v, W: 2 eta e':e' and zeta (tr L)^2 over all volumes. Right after
+// corrected_viscous_force(v).
+struct LawDissipation {
+  double friction = 0, bulk = 0;
+  LawDissipation& operator+=(const LawDissipation& other) {
+    friction += other.friction, bulk += other.bulk;
+    return *this;
+  }
+};
+LawDissipation corrected_dissipation(const Work& work, const Particles& particles, const Model& model, const Field& v);
 void pair_viscous_force(Work& work, const Particles& particles, const Model& model, const Field& v, Field& force);
 
 }  // namespace bagnold::sph

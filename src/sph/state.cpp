@@ -11,6 +11,19 @@ std::vector<NamedArray> named_arrays(State& state) {
                                  {"skin", &p.skin},     {"force_evaluations", &state.force_evaluations}};
   const std::array<std::pair<const char*, Field*>, 4> vectors{
       {{"x", &p.x}, {"v", &p.v}, {"rate", &p.rate}, {"x_built", &p.x_built}}};
+  Ledger& l = state.ledger;
+  const std::array<std::pair<const char*, double*>, 11> entries{{{"start", &l.start},
+                                                                 {"gravity", &l.gravity},
+                                                                 {"pressure", &l.pressure},
+                                                                 {"friction", &l.friction},
+                                                                 {"bulk", &l.bulk},
+                                                                 {"residual", &l.residual},
+                                                                 {"artificial", &l.artificial},
+                                                                 {"stepping", &l.stepping},
+                                                                 {"walls", &l.walls},
+                                                                 {"displaced", &l.displaced},
+                                                                 {"diffusion", &l.diffusion}}};
+  for (const auto& [name, value] : entries) arrays.push_back({std::string("ledger/") + name, value});
   for (const auto& [name, vector] : vectors)
     for (std::size_t k = 0; k < 3; ++k) arrays.push_back({std::string(name) + "_" + std::to_string(k), &(*vector)[k]});
   return arrays;

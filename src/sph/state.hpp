@@ -22,8 +22,26 @@ struct Particles {
   std::int64_t size() const { return static_cast<std::int64_t>(mass.size()); }
 };
 
+// Where energy went since t = 0, J (J/m planar). Kept only when asked for.
+struct Ledger {
+  double start = 0;       // kinetic energy at t = 0
+  double gravity = 0;     // work of gravity
+  double pressure = 0;    // work done against pressure: squeezes grains, or dilates and is lost
+  double friction = 0;    // lost to the viscosity of the law
+  double bulk = 0;        // lost to bulk viscosity
+  double residual = 0;    // lost to the residual viscosity; printed operator: to its stress less that of the law
+  double artificial = 0;  // lost to artificial viscosity
+  double stepping = 0;    // lost to first order in time, viscosity of the wrong moment, an unfinished solution
+  double walls = 0;       // kinetic energy taken by the base and by being put back
+  double displaced = 0;   // potential energy gained by being moved: shifting, being put back
+  double diffusion = 0;   // put into compression by density diffusion and volume correction; no part of the balance
+  double kinetic = 0, height = 0;  // of the step under way: energies that forces alone would leave
+};
+
 struct State {
   Particles particles;
+  bool keep_ledger = false;
+  Ledger ledger;
   double time = 0;
   double dt = 0;                       // of the last step
   double max_kinematic_viscosity = 0;  // max eta/rho of the last step: the explicit viscous limit of the next

@@ -234,7 +234,7 @@ TEST(Exactness, AnotherPlaceInThePeriodIsTheSameFlowToRoundOff) {
       if (!better && shift < 0.11 * binary_period) continue;
       Simulation a = binary_flow(better, 0, false), b = binary_flow(better, shift, true);
       int done = 0;
-      for (const auto [count, most] : {std::pair{1, 1e-15}, {10, 5e-15}, {300, 5e-14}}) {
+      for (const auto& [count, most] : {std::pair{1, 1e-15}, {10, 5e-15}, {300, 5e-14}}) {
         steps(a, count - done);
         steps(b, count - done);
         done = count;

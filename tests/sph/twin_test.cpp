@@ -7,7 +7,7 @@ namespace {
 
 // The dissipation potential of a free block as docs/sph.md writes it, by plain sums over all pairs.
 template <int D>
-double potential(const Case& c, const Field& v) {
+double potential(const Case& c, const Field& v, bool law_only = false) {
   const Particles& p = c.state.particles;
   const std::size_t n = p.mass.size();
   const double h = c.model.h(), a = (D == 2 ? 7 / (64 * M_PI) : 21 / (256 * M_PI)) / std::pow(h, D);
@@ -60,6 +60,7 @@ double potential(const Case& c, const Field& v) {
     const double V = p.mass[i] / p.rho[i], eta = c.work.viscosity[i];
     sum += V * (eta * (ee - trace * trace / 3) + 0.5 * c.work.bulk[i] * trace * trace);
   }
+  if (law_only) return sum;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) {
       if (i == j) continue;
@@ -90,6 +91,10 @@ TEST(Twin, CorrectedForceIsTheDerivativeOfThePotential) {
     const double slope = 0.5 * (potential<D>(c, plus) - potential<D>(c, minus));
     EXPECT_NEAR(inner(c, force, w) / -slope, 1, 1e-8) << D;
     EXPECT_NEAR(inner(c, force, v) / (-2 * potential<D>(c, v)), 1, 1e-8) << D;
+    viscous_force(c.work, c.state.particles, c.model, v, force);
+    const LawDissipation law = corrected_dissipation(c.work, c.state.particles, c.model, v);
+    EXPECT_NEAR((law.friction + law.bulk) / (2 * potential<D>(c, v, true)), 1, 1e-8) << D;
+    EXPECT_GT(law.bulk, 0);
   };
   compare(std::integral_constant<int, 2>{}, 10);
   compare(std::integral_constant<int, 3>{}, 6);
