@@ -32,10 +32,7 @@ TEST_P(Continuum, InterruptedAndResumedGivesTheSameBits) {
   const Scratch scratch;
   const std::string run = GetParam() + often + "--set output.energy_ledger=true ";
   ASSERT_EQ(bagnold(scratch, run + "-o whole").exit_code, 0);
-  const std::string series = (scratch / "cut" / "series.csv").string();
-  const Outcome cut = bagnold(
-      scratch, run + "-o cut & pid=$!; while kill -0 $pid && ! [ \"$(cat " + series +
-                   " | wc -l)\" -gt 30 ]; do sleep 0.02; done 2>/dev/null; kill -TERM $pid; wait $pid; exit $? #");
+  const Outcome cut = bagnold_cut(scratch, run + "-o cut", "cut", 30);
   ASSERT_EQ(cut.exit_code, 75) << cut.err;
   const auto stopped = io::read_json(scratch / "cut" / "summary.json");
   EXPECT_EQ(stopped["status"], "interrupted");

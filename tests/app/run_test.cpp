@@ -72,8 +72,7 @@ TEST_P(SameBits, InterruptedAndResumed) {
   write_text(scratch / "c.toml", tiny);
   const std::string longer = " --set time.end=25 --quiet" + GetParam();
   ASSERT_EQ(bagnold(scratch, "run c.toml -o whole" + longer).exit_code, 0);
-  const Outcome cut =
-      bagnold(scratch, "run c.toml -o cut" + longer + " & pid=$!; sleep 0.3; kill -TERM $pid; wait $pid; exit $? #");
+  const Outcome cut = bagnold_cut(scratch, "run c.toml -o cut" + longer, "cut", 20);
   ASSERT_EQ(cut.exit_code, 75) << cut.err;
   EXPECT_EQ(io::read_json(scratch / "cut" / "summary.json")["status"], "interrupted");
   const Outcome rest = bagnold(scratch, "resume cut --quiet");
@@ -90,7 +89,7 @@ TEST_P(SameBits, KilledWithoutWarningAndResumed) {
   write_text(scratch / "c.toml", tiny);
   const std::string longer = " --set time.end=25 --set output.checkpoint_every_s=0.1 --quiet" + GetParam();
   ASSERT_EQ(bagnold(scratch, "run c.toml -o whole" + longer).exit_code, 0);
-  (void)bagnold(scratch, "run c.toml -o cut" + longer + " & pid=$!; sleep 0.4; kill -KILL $pid; wait $pid; exit $? #");
+  (void)bagnold_cut(scratch, "run c.toml -o cut" + longer, "cut", 40, "KILL");
   const Outcome rest = bagnold(scratch, "resume cut --quiet");
   ASSERT_EQ(rest.exit_code, 0) << rest.err;
   expect_same_state(scratch / "whole", scratch / "cut");

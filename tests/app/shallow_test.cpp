@@ -223,10 +223,7 @@ TEST(Valley, InterruptedAndResumedGivesTheSameBits) {
   for (const char* side : {"left", "right", "bottom", "top"})
     longer += std::string(" --set boundary.") + side + "=wall";
   longer += " --set scheme.max_step=0.002";  // so that it is not over before it is cut
-  const std::string series = (scratch / "cut" / "series.csv").string();
-  const Outcome cut = bagnold(
-      scratch, "run c.toml -o cut" + longer + " & pid=$!; while kill -0 $pid && ! [ \"$(cat " + series +
-                   " | wc -l)\" -gt 20 ]; do sleep 0.02; done 2>/dev/null; kill -TERM $pid; wait $pid; exit $? #");
+  const Outcome cut = bagnold_cut(scratch, "run c.toml -o cut" + longer, "cut", 20);
   ASSERT_EQ(cut.exit_code, 75) << cut.err;
   const auto stopped = io::read_json(scratch / "cut" / "summary.json");
   EXPECT_EQ(stopped["status"], "interrupted");

@@ -59,6 +59,16 @@ inline Outcome bagnold(const Scratch& scratch, const std::string& arguments, con
           read_text(scratch / "stderr.txt")};
 }
 
+// Runs `arguments` and sends `signal` as soon as `directory`/series.csv has more than `rows` rows: a moment of the run, not
+// of the clock.
+inline Outcome bagnold_cut(const Scratch& scratch, const std::string& arguments, const std::string& directory, int rows,
+                           const std::string& signal = "TERM") {
+  const std::string series = (scratch / directory / "series.csv").string();
+  return bagnold(scratch, arguments + " & pid=$!; while kill -0 $pid && ! [ \"$(cat " + series + " | wc -l)\" -gt " +
+                              std::to_string(rows + 1) + " ]; do sleep 0.02; done 2>/dev/null; kill -" + signal +
+                              " $pid; wait $pid; exit $? #");
+}
+
 inline std::string case_file(const std::string& name) { return std::string(BAGNOLD_SOURCE_DIR "/cases/") + name; }
 
 }  // namespace bagnold::test
