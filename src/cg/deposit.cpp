@@ -29,6 +29,8 @@ void carry(double m, double I, double d, const Vec3& v, const Vec3& omega, Plain
 
 struct SnapshotGrains {
   using Memo = PlainMemo;
+  static constexpr bool alike = false;
+  Scales scales() const { return {}; }
   const Snapshot& s;
   double z(std::size_t i) const { return s.x[i].z; }
   double diameter(std::size_t i) const { return s.diameter[i]; }
@@ -39,6 +41,8 @@ struct SnapshotGrains {
 
 struct StateGrains {
   using Memo = PlainMemo;
+  static constexpr bool alike = false;
+  Scales scales() const { return {}; }
   const dem::DemState& s;
   double half;  // velocities are half a step behind once it moves
   double z(std::size_t i) const { return s.grains.x[i].z; }

@@ -13,8 +13,10 @@ namespace {
 
 using dem::fast::ContactPack;
 
+template <bool all_alike>
 class RowGrains {
  public:
+  static constexpr bool alike = all_alike;
   // What follows from the mass and size of a grain; neighbours mostly have the same.
   struct Memo {
     double inverse_mass = 0, inverse_inertia = 0, radius = 0, volume = 0;
@@ -26,27 +28,45 @@ class RowGrains {
         velocity_(engine.rows.velocity.data()),
         force_(engine.rows.force.data()),
         half_(engine.step == 0 ? 0 : 0.5 * engine.dt),
-        half_gravity_{half_ * engine.gravity.x, half_ * engine.gravity.y, half_ * engine.gravity.z} {}
+        half_gravity_{half_ * engine.gravity.x, half_ * engine.gravity.y, half_ * engine.gravity.z} {
+    if (!alike) return;
+    const auto slab = std::find_if(engine.slabs.begin(), engine.slabs.end(),
+                                   [](const dem::fast::Slab& s) { return s.begin < s.moving_end; });
+    if (slab != engine.slabs.end()) renew(all_, velocity(slab->begin), force(slab->begin));
+  }
 
   double z(std::size_t k) const { return position_[dem::fast::position_doubles * k + 2]; }
   double diameter(std::size_t k) const { return 2 * position_[dem::fast::position_doubles * k + 3]; }
 
+  // Asks for the rows of a grain.
   void ask(std::size_t k) const {
-    __builtin_prefetch(velocity_ + dem::fast::velocity_doubles * k);
-    __builtin_prefetch(force_ + dem::fast::force_doubles * k);
+    __builtin_prefetch(velocity(k));
+    __builtin_prefetch(force(k));
   }
+
   [[gnu::always_inline]] void carry(std::size_t k, Memo& memo, Lanes& a, Lanes& b) const {
-    const double *v = velocity_ + dem::fast::velocity_doubles * k, *f = force_ + dem::fast::force_doubles * k;
-    if (f[3] != memo.inverse_mass || f[7] != memo.inverse_inertia || v[3] != memo.radius) renew(memo, v, f);
+    const double *v = velocity(k), *f = force(k);
+    if constexpr (!alike)
+      if (f[3] != memo.inverse_mass || f[7] != memo.inverse_inertia || v[3] != memo.radius) renew(memo, v, f);
+    const Lanes one = Lanes{} + 1;
     // { v, 1, omega, 1 } at the time of the positions
-    const Lanes motion = __builtin_shufflevector(memo.half_step * lanes(f) + (lanes(v) + half_gravity_), Lanes{} + 1, 0,
-                                                 1, 2, 8, 4, 5, 6, 8);
-    a = memo.inertia * motion;
-    b = __builtin_shufflevector(motion, Lanes{} + 1, 0, 0, 0, 1, 1, 2, 8, 8) *
-        __builtin_shufflevector(a, memo.volumes, 0, 1, 2, 1, 2, 2, 8, 9);
+    const Lanes motion = __builtin_shufflevector(
+        (alike ? all_ : memo).half_step * lanes(f) + (lanes(v) + half_gravity_), one, 0, 1, 2, 8, 4, 5, 6, 8);
+    a = alike ? motion : memo.inertia * motion;
+    b = __builtin_shufflevector(motion, one, 0, 0, 0, 1, 1, 2, 8, 8) *
+        __builtin_shufflevector(a, alike ? one : memo.volumes, 0, 1, 2, 1, 2, 2, 8, 9);
+  }
+
+  Scales scales() const {
+    if (!alike) return {};
+    const double m = all_.inertia[0], v = all_.volume;
+    return {all_.inertia, Lanes{m, m, m, m, m, m, all_.volumes[0], all_.volumes[1]}, Lanes{v, v, v, v, v, v, 0, 1}};
   }
 
  private:
+  const double* velocity(std::size_t k) const { return velocity_ + dem::fast::velocity_doubles * k; }
+  const double* force(std::size_t k) const { return force_ + dem::fast::force_doubles * k; }
+
   void renew(Memo& memo, const double* v, const double* f) const {
     const double m = 1 / f[3], I = 1 / f[7], d = 2 * v[3];
     memo.inverse_mass = f[3];
@@ -61,6 +81,7 @@ class RowGrains {
   const double *position_, *velocity_, *force_;
   double half_;
   Lanes half_gravity_;
+  Memo all_;
 };
 
 // Channels [16, 32) of eight contacts: fabric, nothing, contact stress f_a r_b/r_z.
@@ -138,10 +159,9 @@ void share_section(const dem::fast::Engine& engine, std::size_t section, double 
   }
 }
 
-}  // namespace
-
-void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) {
-  const RowGrains grains(engine);
+template <bool alike>
+void add(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) {
+  const RowGrains<alike> grains(engine);
   const std::size_t sections = engine.sections.size();
   w.ranges.clear();
   for (const auto& slab : engine.slabs) w.ranges.emplace_back(slab.begin, slab.moving_end);
@@ -176,6 +196,12 @@ void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch
   }
   deposit_grains(p, grains, w);
   ++p.samples;
+}
+
+}  // namespace
+
+void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) {
+  engine.alike ? add<true>(p, engine, w) : add<false>(p, engine, w);
 }
 
 }  // namespace bagnold::cg

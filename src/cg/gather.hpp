@@ -147,8 +147,14 @@ inline void share(ProfileScratch& w, std::size_t grain, const Lanes& fabric, con
   return ((row[0] + row[1]) + (row[2] + row[3])) + ((row[4] + row[5]) + (row[6] + row[7]));
 }
 
+// What sums are multiplied by: channels [0, 16), and [16, 24), of contacts.
+struct Scales {
+  Lanes low{Lanes{} + 1}, high{Lanes{} + 1}, contacts{Lanes{} + 1};
+};
+
 // The grains of one bin, a few at a time: powers of their places first, then what they carry, then what the contacts of those
-// that have any do, sixteen channels at a time so that the sums stay in registers.
+// that have any do, sixteen channels at a time so that the sums stay in registers. Grains that are alike carry motion only
+// and 1 for the mass: their sums are scaled once a bin, and that for the mass is the number of grains.
 template <int terms, class Grains>
 class BinDeposit {
  public:
@@ -158,15 +164,16 @@ class BinDeposit {
     for (; first < last; first += most) {
       const std::size_t n = std::min(most, last - first);
       const std::int32_t* item = w_.order.data() + first;
+      const Scales scales = grains_.scales();
       take_powers(bin, w_.sorted_place.data() + first, n);
       std::size_t touched = 0;  // grains with contacts
       std::uint8_t* const touches = w_.touches.data();
       const ContactShare* const shares = w_.shares.data();
-      add_sums(bin, n, [&](std::size_t g, Lanes& a, Lanes& b) {
+      add_sums<Grains::alike>(bin, n, scales.low, scales.high, [&](std::size_t g, Lanes& a, Lanes& b) {
         const auto i = static_cast<std::size_t>(item[g]);
         if constexpr (requires { grains_.ask(i); }) grains_.ask(static_cast<std::size_t>(item[g + look_ahead]));
         grains_.carry(i, memo_, a, b);
-        volume_[touched] = memo_.volume;
+        if constexpr (!Grains::alike) volume_[touched] = memo_.volume;
         grain_[touched] = g;
         share_[touched] = item[g];
         const std::size_t sums = touches[i] * i;  // of another grain if it has none
@@ -176,10 +183,13 @@ class BinDeposit {
         __builtin_prefetch(shares[sums].channel.data() + 8);
         return g;
       });
-      add_sums(bin + kFabric, touched, [&](std::size_t t, Lanes& a, Lanes& b) {
+      add_sums<false>(bin + kFabric, touched, scales.contacts, Lanes{} + 1, [&](std::size_t t, Lanes& a, Lanes& b) {
         const double* share = shares[share_[t]].channel.data();
-        const double v = volume_[t];
-        a = lanes(share) * Lanes{v, v, v, v, v, v, 0, 1};
+        a = lanes(share);
+        if constexpr (!Grains::alike) {
+          const double v = volume_[t];
+          a *= Lanes{v, v, v, v, v, v, 0, 1};
+        }
         b = lanes(share + 8);
         return grain_[t];
       });
@@ -202,9 +212,10 @@ class BinDeposit {
       for (std::size_t k = 1; k < terms; ++k) {
         p *= s;
         lanes(&power_[k][g]) = p;
-        number[k - 1] += p;
+        if constexpr (!Grains::alike) number[k - 1] += p;
       }
     }
+    if constexpr (Grains::alike) return;
     bin[kNumber] += static_cast<double>(n);
     for (std::size_t k = 1; k < terms; k += 8) {
       Lanes eight[8];
@@ -214,15 +225,12 @@ class BinDeposit {
     }
   }
 
-  // Adds sixteen channels of n things: next(k, a, b) gives those of thing k and returns its grain.
-  template <class Next>
-  void add_sums(double* __restrict bin, std::size_t n, const Next& next) {
-    Lanes low[terms], high[terms];
-#pragma GCC unroll 16
-    for (std::size_t k = 0; k < terms; ++k) {
-      low[k] = lanes(bin + k * flow_width);
-      high[k] = lanes(bin + k * flow_width + 8);
-    }
+  // Adds sixteen channels of n things times the scales: next(k, a, b) gives those of thing k and returns its grain.
+  // `count`: channel kMass counts them.
+  template <bool count, class Next>
+  void add_sums(double* __restrict bin, std::size_t n, const Lanes& scale_low, const Lanes& scale_high,
+                const Next& next) {
+    Lanes low[terms]{}, high[terms]{};
     for (std::size_t t = 0; t < n; ++t) {
       Lanes a, b;
       const std::size_t g = next(t, a, b);
@@ -234,8 +242,9 @@ class BinDeposit {
     }
 #pragma GCC unroll 16
     for (std::size_t k = 0; k < terms; ++k) {
-      lanes(bin + k * flow_width) = low[k];
-      lanes(bin + k * flow_width + 8) = high[k];
+      lanes(bin + k * flow_width) += scale_low * low[k];
+      lanes(bin + k * flow_width + 8) += scale_high * high[k];
+      if constexpr (count) bin[k * flow_width + kNumber] += low[k][std::size_t{kMass}];
     }
   }
 

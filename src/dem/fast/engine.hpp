@@ -52,6 +52,7 @@ struct Engine {
   double dt = 0, overlap_ratio = 0, skin = 0;
   std::int64_t step = 0;
   bool equal_radii = true, one_kind = true;
+  bool alike = true;  // the flowing grains: of one size, mass and moment of inertia
   std::size_t history_numbers = 3, constant_numbers = 0;
   std::vector<double> constants;  // of the laws, by pair of species
 

@@ -25,6 +25,10 @@ double largest_diameter(const Grains& g) { return *std::max_element(g.diameter.b
 double skin_of(const Grains& g) { return 0.24 * *std::min_element(g.diameter.begin(), g.diameter.begin() + g.flowing); }
 
 void choose_kernel(Engine& engine, const Grains& g) {
+  engine.alike = true;
+  for (std::size_t i = 1; i < static_cast<std::size_t>(g.flowing); ++i)
+    engine.alike =
+        engine.alike && g.diameter[i] == g.diameter[0] && g.mass[i] == g.mass[0] && g.inertia[i] == g.inertia[0];
   engine.equal_radii = std::all_of(g.diameter.begin(), g.diameter.end(), [&](double d) { return d == g.diameter[0]; });
   with_laws(engine.laws, [&](const auto& tables) {
     engine.constant_numbers = flatten_tables(tables, engine.constants);
