@@ -77,24 +77,27 @@ void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
   engine.start.assign(rows, Vec3{});
   engine.slabs.assign(static_cast<std::size_t>(grid.slabs), {});
   const std::size_t cells = static_cast<std::size_t>(grid.count[1]) * static_cast<std::size_t>(grid.count[2]);
-  std::size_t row = 0;
-  for (std::size_t s = 0; s < engine.slabs.size(); ++s) {
-    Slab& slab = engine.slabs[s];
-    slab.begin = row;
-    for (const bool flowing : {true, false}) {
-      for (auto q = at(grid.cell_begin[s * cells]); q < at(grid.cell_begin[(s + 1) * cells]); ++q) {
-        const auto i = at(grid.order[q]);
-        if ((static_cast<std::int64_t>(i) < g.flowing) != flowing) continue;
-        engine.grain[row] = static_cast<std::int32_t>(i);
-        if (!engine.one_kind) engine.species[row] = g.species[i];
-        engine.start[row] = start[i];
-        engine.row[i] = static_cast<std::uint32_t>(row++);
-      }
-      if (flowing) slab.moving_end = row;
-    }
-    slab.end = row;
-    row += 2;
-  }
+  parallel_for(
+      grid.slabs,
+      [&](std::int64_t n) {
+        const std::size_t s = at(n), first = at(grid.cell_begin[s * cells]),
+                          last = at(grid.cell_begin[(s + 1) * cells]);
+        Slab& slab = engine.slabs[s];
+        std::size_t row = slab.begin = first + 2 * s;
+        for (const bool flowing : {true, false}) {
+          for (std::size_t q = first; q < last; ++q) {
+            const auto i = at(grid.order[q]);
+            if ((static_cast<std::int64_t>(i) < g.flowing) != flowing) continue;
+            engine.grain[row] = static_cast<std::int32_t>(i);
+            if (!engine.one_kind) engine.species[row] = g.species[i];
+            engine.start[row] = start[i];
+            engine.row[i] = static_cast<std::uint32_t>(row++);
+          }
+          if (flowing) slab.moving_end = row;
+        }
+        slab.end = row;
+      },
+      rows >= 500);
 }
 
 // The rows of the grains from the arrays of the state, which are given up one after the other: large flows are in
@@ -133,43 +136,67 @@ void take_grains(Engine& engine, Grains& g) {
     rows.position[position_doubles * (slab.end + 1)] = 0.3 * g.diameter[0];
 }
 
-// The touching pairs with their springs.
-void give_pairs(const Engine& engine, PairList& pairs) {
-  pairs = {};
-  std::size_t listed = 0;
-  for (const Section& section : engine.sections) listed += section.inner.count;
-  for (auto* numbers : {&pairs.i, &pairs.j}) numbers->reserve(listed);
-  for (auto* vectors : {&pairs.spring, &pairs.roll}) vectors->reserve(listed);
-  pairs.image.reserve(listed);
-  for (const Section& section : engine.sections)
-    for (std::size_t k = 0; k < section.inner.count; ++k) {
-      const auto a = row_of(section.inner.i[k]), b = row_of(section.inner.j[k]);
-      const double *xa = &engine.rows.position[position_doubles * a], *xb = &engine.rows.position[position_doubles * b];
-      Vec3 r{xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2]};
-      std::array<int, 3> image{};
-      for (int d = 0; d < 3; ++d) {
-        image[at(d)] = static_cast<int>(std::nearbyint(engine.images.inverse[d] * r[d]));
-        r[d] -= engine.images.length[d] * image[at(d)];
-      }
-      const double* h = &section.history[k / 8 * 8 * engine.history_numbers + k % 8];
-      Vec3 spring{h[0], h[8], h[16]}, roll{};
-      if (engine.history_numbers > 3) roll = {h[24], h[32], h[40]};
-      const double reach = xa[3] + xb[3];  // the kernel may have rounded a grazing contact the other way
-      if (norm2(r) >= reach * reach && spring == Vec3{} && roll == Vec3{}) continue;
-      std::int32_t i = engine.grain[a], j = engine.grain[b];
-      auto code = neighbours::image_code(image[0], image[1], image[2]);
-      if (i > j) {
-        std::swap(i, j);
-        code = neighbours::opposite(code);
-        spring = -spring;
-        roll = -roll;
-      }
-      pairs.i.push_back(i);
-      pairs.j.push_back(j);
-      pairs.image.push_back(code);
-      pairs.spring.push_back(spring);
-      pairs.roll.push_back(roll);
+// A pair of an inner list that touches, or whose spring says so: the kernel may have rounded a grazing contact the other way.
+struct Touching {
+  std::int32_t i, j;  // grains, i < j
+  std::array<int, 3> image;
+  Vec3 spring, roll;
+};
+template <class F>
+void for_touching(const Engine& engine, const Section& section, F&& f) {
+  for (std::size_t k = 0; k < section.inner.count; ++k) {
+    const auto a = row_of(section.inner.i[k]), b = row_of(section.inner.j[k]);
+    const double *xa = &engine.rows.position[position_doubles * a], *xb = &engine.rows.position[position_doubles * b];
+    Vec3 r{xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2]};
+    Touching t{engine.grain[a], engine.grain[b], {}, {}, {}};
+    for (int d = 0; d < 3; ++d) {
+      t.image[at(d)] = static_cast<int>(std::nearbyint(engine.images.inverse[d] * r[d]));
+      r[d] -= engine.images.length[d] * t.image[at(d)];
     }
+    const double* h = &section.history[k / 8 * 8 * engine.history_numbers + k % 8];
+    t.spring = {h[0], h[8], h[16]};
+    if (engine.history_numbers > 3) t.roll = {h[24], h[32], h[40]};
+    const double reach = xa[3] + xb[3];
+    if (norm2(r) >= reach * reach && t.spring == Vec3{} && t.roll == Vec3{}) continue;
+    if (t.i > t.j) {
+      std::swap(t.i, t.j);
+      for (int& n : t.image) n = -n;
+      t.spring = -t.spring;
+      t.roll = -t.roll;
+    }
+    f(t);
+  }
+}
+
+// The touching pairs with their springs, in the order of the sections: counted first, then each section writes its own.
+void give_pairs(const Engine& engine, PairList& pairs) {
+  const auto sections = static_cast<std::int64_t>(engine.sections.size());
+  const bool threads = engine.grain.size() >= 500;
+  std::vector<std::size_t> begin(engine.sections.size() + 1, 0);
+  parallel_for(
+      sections,
+      [&](std::int64_t s) {
+        for_touching(engine, engine.sections[at(s)], [&](const Touching&) { ++begin[at(s) + 1]; });
+      },
+      threads);
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  pairs = {};
+  for (auto* numbers : {&pairs.i, &pairs.j}) numbers->resize(begin.back());
+  for (auto* vectors : {&pairs.spring, &pairs.roll}) vectors->resize(begin.back());
+  pairs.image.resize(begin.back());
+  parallel_for(
+      sections,
+      [&](std::int64_t s) {
+        std::size_t p = begin[at(s)];
+        for_touching(engine, engine.sections[at(s)], [&](const Touching& t) {
+          pairs.i[p] = t.i;
+          pairs.j[p] = t.j;
+          pairs.image[p] = neighbours::image_code(t.image[0], t.image[1], t.image[2]);
+          pairs.spring[p] = t.spring;
+          pairs.roll[p++] = t.roll;
+        });
+      },
+      threads);
   pairs.touching.assign(pairs.i.size(), 1);
   pairs.slab_begin = {0, static_cast<std::int64_t>(pairs.i.size())};
 }
@@ -222,11 +249,16 @@ void remember_origin(Engine& engine, const PairList& pairs) {
 }
 
 void measure_accelerations(Engine& engine) {
-  for (Slab& slab : engine.slabs)
-    for (std::size_t k = slab.begin; k < slab.moving_end; ++k) {
-      const double* f = &engine.rows.force[force_doubles * k];
-      slab.acceleration = std::max(slab.acceleration, norm(f[3] * Vec3{f[0], f[1], f[2]} + engine.gravity));
-    }
+  parallel_for(
+      static_cast<std::int64_t>(engine.slabs.size()),
+      [&](std::int64_t s) {
+        Slab& slab = engine.slabs[at(s)];
+        for (std::size_t k = slab.begin; k < slab.moving_end; ++k) {
+          const double* f = &engine.rows.force[force_doubles * k];
+          slab.acceleration = std::max(slab.acceleration, norm(f[3] * Vec3{f[0], f[1], f[2]} + engine.gravity));
+        }
+      },
+      engine.grain.size() >= 500);
 }
 
 // A number that tells the grains of one moment from those of any other.
