@@ -11,6 +11,7 @@
 #include "io/csv.hpp"
 #include "io/hdf5.hpp"
 #include "io/vtk.hpp"
+#include "scenario/printed_flow.hpp"
 #include "sph/constitutive.hpp"
 #include "sph/energy.hpp"
 #include "sph/interpolate.hpp"
@@ -194,6 +195,13 @@ class SphModel final : public Model {
       summary["u_surface"] = top > 0 ? surface / top : NAN;
       summary["u_surface_exact"] = flow.u_surface;
       summary["steady_time"] = steady_time_ > 0 ? steady_time_ : NAN;
+      summary["u_mean"] = mean_velocity();
+      if (!in_.model.corrected() && std::holds_alternative<laws::rheology::MuI>(in_.model.material.rheology)) {
+        const auto response = printed_response(in_.plane, state_, work_, in_.model);
+        summary["stress_response"] = response.stress;
+        summary["gradient_response"] = response.gradient;
+        summary["u_mean_responding"] = responding_velocity(in_.plane, in_.model, response, state_.time);
+      }
       return;
     }
     const sph::Front front = find_front(state_, work_, in_.model);

@@ -74,7 +74,8 @@ PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model) {
 }
 
 std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, const sph::Model& model, double height,
-                                                int cells, const std::vector<double>& times) {
+                                                int cells, const std::vector<double>& times,
+                                                double constant_viscosity) {
   const PlaneFlow steady = steady_flow(plane, model);
   const double theta = plane.angle_deg * M_PI / 180, rho_s = model.grains().grain_density, rho = steady.phi * rho_s,
                dz = height / cells, d = model.material.grain_diameter;
@@ -94,8 +95,8 @@ std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, cons
           const double a = d * std::sqrt(rho_s / p);
           std::visit(
               [&](const auto& rheology, const auto& regularisation) {
-                eta[k] = regularisation.viscosity(rheology.static_friction() * p, p * a * rheology.excess()(gamma * a),
-                                                  gamma);
+                eta[k] = constant_viscosity + regularisation.viscosity(rheology.static_friction() * p,
+                                                                       p * a * rheology.excess()(gamma * a), gamma);
               },
               model.material.rheology, model.material.regularisation);
         }

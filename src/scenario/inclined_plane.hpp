@@ -37,8 +37,9 @@ struct PlaneFlow {
 PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model);
 
 // Flow from rest: rho du/dt = rho g sin(theta) + d tau/dz on `cells` cells, backward Euler, for the thickness `height`.
-// Returns u at the cell centres at each of `times` (ascending).
+// Returns u at the cell centres at each of `times` (ascending). `constant_viscosity` is added to the one of the law, Pa s.
 std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, const sph::Model& model, double height,
-                                                int cells, const std::vector<double>& times);
+                                                int cells, const std::vector<double>& times,
+                                                double constant_viscosity = 0);
 
 }  // namespace bagnold::scenario

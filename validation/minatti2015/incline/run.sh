@@ -16,26 +16,32 @@ options() {
     improved-1s | improved-3s | improved-6.5s) local t=${1#*-}; echo "--set time.end=${t%s}" ;;
     improved-steady) echo "--set time.end=20" ;;
     rows-* | steady-*) awk -v run="$1" 'BEGIN { split(run, a, "-"); n = a[2]; dp = 0.1/n; print "--set time.end=" (a[1] == "rows" ? 3 : 20) " --set scenario.spacing=" dp " --set scenario.length=" (n > 20 ? 20*dp : 0.1) }' ;;
-    literal-alpha0) echo "--set time.end=9 $literal" ;;
-    literal-alpha0.05) echo "--set time.end=9 $literal --set numerics.artificial_viscosity=0.05" ;;
+    literal-alpha*-*s) # literal-alphaALPHA-TIMEs
+      local a=${1#literal-alpha} t=${1##*-}
+      echo "--set time.end=${t%s} $literal --set numerics.artificial_viscosity=${a%-*}" ;;
     *) echo "unknown run $1" >&2; return 1 ;;
   esac
 }
 runs=("$@")
-[ ${#runs[@]} = 0 ] && runs=(improved-1s improved-3s improved-6.5s improved-steady rows-10 rows-20 rows-40 rows-80 steady-10 steady-20 steady-40 literal-alpha0 literal-alpha0.05)
+[ ${#runs[@]} = 0 ] && runs=(improved-1s improved-3s improved-6.5s improved-steady rows-10 rows-20 rows-40 rows-80 steady-10 steady-20 steady-40
+  literal-alpha{0,0.05}-{1,2,3,5,7,9}s)
 for run in "${runs[@]}"; do
   grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
   # shellcheck disable=SC2046
   "$program" run "$top/cases/incline.toml" -o "$scratch/$run" --overwrite --quiet $(options "$run") || echo "$run failed" >&2
 done
 
-value() { sed -n "s/^ *\"$2\": \(.*[^,]\),\{0,1\}\$/\1/p" "$1" | head -1; }
+columns=(particles time steps profile_error_l2 transient_error_l2 pressure_error_l2 u_surface u_surface_exact u_mean
+         u_mean_responding stress_response gradient_response git_hash)
 {
-  echo "run,particles,time_s,steps,profile_error_l2,transient_error_l2,pressure_error_l2,u_surface,u_surface_exact,git_hash"
+  echo "run ${columns[*]}" | tr ' ' ,
   for directory in "$scratch"/*/; do
     s=$directory/summary.json
     [ -f "$s" ] || continue
-    echo "$(basename "$directory"),$(value "$s" particles),$(value "$s" time),$(value "$s" steps),$(value "$s" profile_error_l2),$(value "$s" transient_error_l2),$(value "$s" pressure_error_l2),$(value "$s" u_surface),$(value "$s" u_surface_exact),$(value "$s" git_hash | tr -d '"')"
+    line=$(basename "$directory")
+    for column in "${columns[@]}"; do # the last line of an object has no comma; what a run does not have stays empty
+      line+=,$(sed -n "s/^ *\"$column\": \(.*[^,]\),\{0,1\}\$/\1/p" "$s" | head -1 | tr -d '"')
+    done
+    echo "$line"
   done
 } > "$here/results.csv"
-cat "$here/results.csv"
