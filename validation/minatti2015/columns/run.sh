@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The six columns of table 3 (see README.md). Usage: run.sh [PROGRAM] [SCRATCH] [RUN...]
-# Runs what is named (default: everything) and has not been completed in SCRATCH, then rewrites results.csv from all that is there.
+# Runs what is named (default: everything) and has not been completed in SCRATCH, then rewrites results.csv and literal.csv from all that is there.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(cd "$here/../../.." && pwd)
@@ -63,9 +63,9 @@ front() {
       printf "%.3f,%.5f", stop, (f[n] - f[j])/(t[n] - t[j])/sqrt(9.81*H)
     }' "$1/series.csv"
 }
-{
+table() { # of the runs named
   echo "row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop_s,front_speed_end,runout_connected,runout_layer,runout_raw,height_m,runout_experiment,error_percent,layer_error_percent,raw_error_percent,git_hash"
-  for directory in "$scratch"/*-*-[1-6]; do
+  for directory in "$@"; do
     s=$directory/summary.json
     [ -f "$s" ] || continue
     name=$(basename "$directory")
@@ -79,5 +79,14 @@ front() {
               sprintf("%.4f", h), sprintf("%.3f", target), sprintf("%+.1f", 100*(runout/target - 1)), sprintf("%+.1f", 100*(layer/target - 1)),
               sprintf("%+.1f", 100*(raw/target - 1)), hash }'
   done | sort -t, -k3,3 -k2,2 -k1,1n
-} > "$here/results.csv"
-cat "$here/results.csv"
+}
+improved=() literal=()
+for directory in "$scratch"/*-*-[1-6]; do
+  case $(basename "$directory") in
+    literal-* | stepped-*) literal+=("$directory") ;;
+    *) improved+=("$directory") ;;
+  esac
+done
+table "${improved[@]}" > "$here/results.csv"
+table "${literal[@]}" > "$here/literal.csv"
+cat "$here/results.csv" "$here/literal.csv"
