@@ -21,6 +21,7 @@ struct Plan {
   std::string name, caption, label;
   std::vector<Label> columns;
   bool log = false;
+  bool inside = false;  // a ratio, of which nothing is left but noise above the surface and below the base
 };
 
 const std::vector<Plan>& series_plans() {
@@ -77,8 +78,9 @@ const std::vector<Plan>& profile_plans() {
        "Friction: shear stress over normal stress. In a steady flow it is the tangent of the slope (dashed).",
        "{/Symbol m}",
        {{"mu", ""}},
-       false},
-      {"inertial_number", "Inertial number over the depth.", "I", {{"inertial_number", ""}}, false},
+       false,
+       true},
+      {"inertial_number", "Inertial number over the depth.", "I", {{"inertial_number", ""}}, false, true},
       {"temperature", "Granular temperature over the depth.", "T", {{"temperature", ""}}, false}};
   return plans;
 }
@@ -102,11 +104,16 @@ bool worth_drawing(const Curve& curve) {
          std::any_of(curve.x.begin(), curve.x.end(), [](double v) { return std::isfinite(v); });
 }
 
-// z upwards, the quantity across.
-Curve over_depth(const io::CsvTable& profile, const std::string& column, std::string label) {
+// z upwards, the quantity across; `inside` the flow only, where that is known.
+Curve over_depth(const RunData& run, const io::CsvTable& profile, const std::string& column, std::string label,
+                 bool inside) {
   Curve curve{.label = std::move(label), .x = profile[column], .y = profile["z"]};
   if (column == "sigma_xz")  // negative in a flow along x: drawn with the others as its opposite
     for (double& v : curve.x) v = -v;
+  const double h = number(run, "flow", "h"), base = number(run, "flow", "base");
+  if (inside && std::isfinite(h * base))
+    for (std::size_t k = 0; k < curve.x.size(); ++k)
+      if (curve.y[k] < base || curve.y[k] > base + h) curve.x[k] = NAN;
   return curve;
 }
 
@@ -140,10 +147,12 @@ std::optional<Curve> slope(const RunData& run, bool several) {
   const double theta = number(run, "flow", "theta_deg");
   if (!std::isfinite(theta)) return std::nullopt;
   const double mu = std::tan(theta * M_PI / 180);
+  const double h = number(run, "flow", "h"), base = number(run, "flow", "base");
   const auto& z = (*run.profile)["z"];
   const auto [low, high] = std::minmax_element(z.begin(), z.end());
-  return Curve{
-      .label = legend(run, "tan {/Symbol q}", several), .x = {mu, mu}, .y = {*low, *high}, .stroke = Stroke::dashed};
+  std::vector<double> ends{*low, *high};
+  if (std::isfinite(h * base)) ends = {base, base + h};
+  return Curve{.label = legend(run, "tan {/Symbol q}", several), .x = {mu, mu}, .y = ends, .stroke = Stroke::dashed};
 }
 
 void keep(std::vector<Figure>& all, Figure figure) {
@@ -209,7 +218,7 @@ void add_profiles(std::vector<Figure>& all, std::span<const RunData> runs) {
       if (!run.profile || !run.profile->has("z")) continue;
       for (const auto& [column, label] : plan.columns)
         if (run.profile->has(column))
-          figure.curves.push_back(over_depth(*run.profile, column, legend(run, label, several)));
+          figure.curves.push_back(over_depth(run, *run.profile, column, legend(run, label, several), plan.inside));
       if (figure.curves.empty()) continue;
       std::optional<Curve> reference;
       if (plan.name == "velocity") reference = bagnold_profile(run, several);
@@ -270,7 +279,7 @@ void add_widths(std::vector<Figure>& all, std::span<const RunData> runs) {
     for (const auto& column : run.widths->names)
       if (column.starts_with("phi_w"))
         figure.curves.push_back(
-            over_depth(*run.widths, column, legend(run, "w = " + column.substr(5), runs.size() > 1)));
+            over_depth(run, *run.widths, column, legend(run, "w = " + column.substr(5), runs.size() > 1), false));
   }
   keep(all, std::move(figure));
 }
