@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The six columns of table 3 (see README.md). Usage: run.sh [PROGRAM] [SCRATCH] [RUN...]
-# Runs what is named (default: everything) and has not been completed in SCRATCH, then rewrites results.csv and literal.csv from all that is there.
+# Runs what is named (default: everything) and has not been completed in SCRATCH, then puts all that is there into results.csv and literal.csv.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(cd "$here/../../.." && pwd)
@@ -70,8 +70,8 @@ front() {
       printf "%.3f,%.5f", stop, (f[n] - f[j])/(t[n] - t[j])/sqrt(9.81*H)
     }' "$1/series.csv"
 }
-table() { # of the runs named
-  echo "row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop_s,front_speed_end,runout_connected,runout_layer,runout_raw,height_m,runout_experiment,error_percent,layer_error_percent,raw_error_percent,git_hash"
+header="row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop_s,front_speed_end,runout_connected,runout_layer,runout_raw,height_m,runout_experiment,error_percent,layer_error_percent,raw_error_percent,git_hash"
+rows() { # of the runs named
   for directory in "$@"; do
     s=$directory/summary.json
     [ -f "$s" ] || continue
@@ -85,7 +85,18 @@ table() { # of the runs named
         print row, geometry, formulation, sprintf("%.3f", a), dp, n, sprintf("%.3f", t), front, sprintf("%.4f", runout), sprintf("%.4f", layer), sprintf("%.4f", raw),
               sprintf("%.4f", h), sprintf("%.3f", target), sprintf("%+.1f", 100*(runout/target - 1)), sprintf("%+.1f", 100*(layer/target - 1)),
               sprintf("%+.1f", 100*(raw/target - 1)), hash }'
-  done | sort -t, -k3,3 -k2,2 -k1,1n
+  done
+}
+# The table in a file with the runs named; rows of other runs stay as they are.
+renew() {
+  local file=$1
+  shift
+  {
+    rows "$@"
+    tail -n +2 "$file"
+  } | awk -F, '!known[$1, $2, $3]++' | sort -t, -k3,3 -k2,2 -k1,1n > "$file.new"
+  { echo "$header"; cat "$file.new"; } > "$file"
+  rm "$file.new"
 }
 improved=() literal=()
 for directory in "$scratch"/*-*-[1-6]; do
@@ -94,6 +105,6 @@ for directory in "$scratch"/*-*-[1-6]; do
     *) improved+=("$directory") ;;
   esac
 done
-table "${improved[@]}" > "$here/results.csv"
-table "${literal[@]}" > "$here/literal.csv"
+renew "$here/results.csv" "${improved[@]}"
+renew "$here/literal.csv" "${literal[@]}"
 cat "$here/results.csv" "$here/literal.csv"
