@@ -13,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "dem/algorithm.hpp"
 #include "dem/contacts.hpp"
+#include "steady_flow.hpp"
 
 namespace {
 using namespace bagnold;
@@ -32,10 +33,10 @@ double median(std::vector<double> values) {
 
 // `advance(state, observer)`: 20 samples long, watched if there is an observer.
 template <class Advance>
-void compare(benchmark::State& bench, int copies, const Advance& advance) {
+void compare(benchmark::State& bench, const std::vector<bench::Grain>& flow, int copies, const Advance& advance) {
   set_threads(1);
   const auto laws = bench::linear_laws();
-  dem::DemState watched = bench::make_state(bench::developed_flow(), copies, 1);
+  dem::DemState watched = bench::make_state(flow, copies, 1);
   dem::prepare(watched, laws);
   dem::advance(watched, laws, 2000);
   dem::DemState alone = watched;
@@ -64,21 +65,26 @@ void compare(benchmark::State& bench, int copies, const Advance& advance) {
       static_cast<double>(dem::contacts(watched, laws).size()) / static_cast<double>(watched.grains.flowing);
 }
 
+void advance_fast(dem::DemState& state, const dem::ContactLaws& laws, cg::ProfileObserver* by) {
+  dem::advance(state, laws, 20 * steps_per_sample, by != nullptr ? by->watch(laws) : dem::Watch{});
+}
+// cases/chute.toml once it is steady.
+void fast_steady(benchmark::State& bench) { compare(bench, bench::steady_flow(), 1, advance_fast); }
+BENCHMARK(fast_steady)->Iterations(60)->Unit(benchmark::kMillisecond);
+
 void fast(benchmark::State& bench) {
-  compare(bench, static_cast<int>(bench.range(0)),
-          [](dem::DemState& state, const dem::ContactLaws& laws, cg::ProfileObserver* by) {
-            dem::advance(state, laws, 20 * steps_per_sample, by != nullptr ? by->watch(laws) : dem::Watch{});
-          });
+  compare(bench, bench::developed_flow(), static_cast<int>(bench.range(0)), advance_fast);
 }
 BENCHMARK(fast)->Arg(1)->Arg(8)->Iterations(60)->Unit(benchmark::kMillisecond);
 
 void plain(benchmark::State& bench) {
-  compare(bench, 1, [](dem::DemState& state, const dem::ContactLaws& laws, cg::ProfileObserver* by) {
-    for (int k = 0; k < 20; ++k) {
-      dem::advance_plain(state, laws, steps_per_sample);
-      if (by != nullptr) by->watch(laws).plain(state);
-    }
-  });
+  compare(bench, bench::developed_flow(), 1,
+          [](dem::DemState& state, const dem::ContactLaws& laws, cg::ProfileObserver* by) {
+            for (int k = 0; k < 20; ++k) {
+              dem::advance_plain(state, laws, steps_per_sample);
+              if (by != nullptr) by->watch(laws).plain(state);
+            }
+          });
 }
 BENCHMARK(plain)->Iterations(20)->Unit(benchmark::kMillisecond);
 

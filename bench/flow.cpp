@@ -14,32 +14,18 @@
 #include <cstring>
 #include <thread>
 
-#include "app/dem_input.hpp"
 #include "chute_flow.hpp"
-#include "config/case.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "lammps.hpp"
+#include "steady_flow.hpp"
 
 namespace {
 using namespace bagnold;
 using namespace bagnold::bench;
 using dem::ContactLaws;
 using dem::DemState;
-
-// cases/chute.toml at t = 200, when it is steady: the bed is a slice of a packing, as in the paper.
-std::vector<Grain> steady_flow() {
-  const std::string file = "bench-steady.state";
-  if (read(file).empty()) {
-    fmt::print("running cases/chute.toml to t = 200, once ...\n");
-    config::Case input = config::Case::from_file(BAGNOLD_CASES "/chute.toml");
-    app::DemInput chute = app::read_dem(input);
-    advance(chute.state, chute.laws, 2'000'000);
-    write(file, grains_of(chute.state));
-  }
-  return read(file);
-}
 
 double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
