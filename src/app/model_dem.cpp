@@ -36,12 +36,14 @@ class DemModel final : public Model {
   double element_steps() const override { return grain_steps_; }
 
   void advance(double until) override {
-    const auto last = static_cast<std::int64_t>(std::ceil(until / in_.state.dt - 1e-6));
+    const double goal =
+        until * (1 - 1e-12);  // what the driver takes for `until`: it would wait forever for anything less
+    const auto last = static_cast<std::int64_t>(std::ceil(goal / in_.state.dt));
     // Signals are heeded every few tenths of a second; entering and leaving the engine costs a few steps.
     const std::int64_t chunk =
         std::max<std::int64_t>(1, 20'000'000 / std::max<std::int64_t>(1, in_.state.grains.flowing));
-    while (in_.state.step < last && !ended() && !stop_requested()) {
-      std::int64_t steps = std::min(last - in_.state.step, chunk);
+    while (time() < goal && !ended() && !stop_requested()) {
+      std::int64_t steps = std::clamp<std::int64_t>(last - in_.state.step, 1, chunk);
       if (arrest_check_ > 0) steps = std::min(steps, arrest_check_ - in_.state.step % arrest_check_);
       if (flow_) steps = std::min(steps, flow_->next_step(in_.state.step) - in_.state.step);
       dem::advance(in_.state, in_.laws, steps, flow_ ? flow_->watch(in_) : dem::Watch{});
