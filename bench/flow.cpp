@@ -119,20 +119,58 @@ void print(const Row& r, double hz) {
       100 * r.rebuild_part);
 }
 
-// Wall time of one thread over that of `count`, best of five by turns.
-double speed_up(const DemState& start, const ContactLaws& laws, int steps, int count) {
-  double one = 1e30, many = 1e30;
-  for (int round = 0; round < 5; ++round)
-    for (const int threads : {1, count}) {
+// Cost per grain-step of a flow over that of another, by CPU time: the median over many short rounds in turn, because the
+// speed of a machine may change in between.
+double relative_cost(const DemState& a, const ContactLaws& a_laws, const DemState& b, const ContactLaws& b_laws) {
+  constexpr int rounds = 21, steps = 1500;
+  const auto seconds = [](const DemState& start, const ContactLaws& laws) {
+    DemState s = warmed(start, laws);
+    const double begin = cpu(RUSAGE_SELF);
+    advance(s, laws, steps);
+    return (cpu(RUSAGE_SELF) - begin) / static_cast<double>(s.grains.flowing);
+  };
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round) {
+    const double first = seconds(a, a_laws);
+    ratios.push_back(first / seconds(b, b_laws));
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + rounds / 2, ratios.end());
+  return ratios[rounds / 2];
+}
+
+// Best wall times of several rounds in turn.
+struct SpeedUp {
+  double one = 1e30, two = 1e30;  // threads
+  double separate = 1e30;         // two flows at once, each on one thread of its own: what the machine has to give
+  double threads() const { return one / two; }
+  double machine() const { return 2 * one / separate; }
+};
+SpeedUp speed_up(const DemState& start, const ContactLaws& laws, int steps) {
+  SpeedUp best;
+  const auto timed = [&](double& shortest, auto&& work) {
+    const double begin = wall();
+    work();
+    shortest = std::min(shortest, wall() - begin);
+  };
+  for (int round = 0; round < 7; ++round) {
+    for (const int threads : {1, 2}) {
       set_threads(threads);
       DemState s = warmed(start, laws);
-      const double begin = wall();
-      advance(s, laws, steps);
-      double& best = threads == 1 ? one : many;
-      best = std::min(best, wall() - begin);
+      timed(threads == 1 ? best.one : best.two, [&] { advance(s, laws, steps); });
     }
-  set_threads(1);
-  return one / many;
+    set_threads(1);
+    std::array<DemState, 2> flows{warmed(start, laws), warmed(start, laws)};
+    timed(best.separate, [&] {
+      std::array<std::thread, 2> both;
+      for (std::size_t k = 0; k < 2; ++k)
+        both[k] = std::thread([&, k] {
+          set_threads(1);
+          advance(flows[k], laws, steps);
+        });
+      for (std::thread& t : both) t.join();
+    });
+  }
+  return best;
 }
 
 // Peak memory of a process that runs the flow, in bytes. Forked before this process has grown or made threads.
@@ -193,20 +231,24 @@ int main(int argc, char** argv) {
   add(unequal);
   add(later);
   add(like);
-  const auto cost = [&](const Row& r, const Row& plain) {
+  const auto cost = [&](const Row& r, const Row& plain, double ratio) {
     fmt::print(
         "{:>10}: {:.2f} times the cost per grain-step of equal grains with the linear law, {:.2f} times per contact\n",
-        r.flow, plain.fast / r.fast, plain.fast * plain.contacts / (r.fast * r.contacts));
+        r.flow, ratio, ratio * plain.contacts / r.contacts);
   };
-  cost(unequal, rows[0]);
-  cost(like, later);
+  cost(unequal, rows[0], relative_cost(make_state(unequal_flow(), 1, 1), linear, one, linear));
+  cost(like, later,
+       relative_cost(make_state(later_flow("hertz-contacts", hertz), 1, 1), hertz,
+                     make_state(later_flow("linear", linear), 1, 1), linear));
 
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
   std::array<double, 2> faster{1, 1};
-  if (cores > 1) {
-    faster = {speed_up(one, linear, 3000, 2), speed_up(make_state(developed, 4, 2), linear, 500, 2)};
-    fmt::print("two threads: {:.2f} times as fast with 4 000 grains, {:.2f} times with 32 000\n", faster[0], faster[1]);
-  }
+  if (std::thread::hardware_concurrency() > 1)
+    for (const std::size_t k : {0, 1}) {
+      const SpeedUp s = k == 0 ? speed_up(one, linear, 3000) : speed_up(make_state(developed, 4, 2), linear, 500);
+      faster[k] = s.threads();
+      fmt::print("two threads with {} grains: {:.2f} times as fast as one; two separate flows at once: {:.2f}\n",
+                 k == 0 ? "4 000" : "32 000", s.threads(), s.machine());
+    }
 
   std::ofstream csv("performance.csv", std::ios::app);
   if (csv.tellp() == 0)
