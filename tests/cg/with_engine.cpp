@@ -15,7 +15,7 @@ using namespace bagnold;
 namespace {
 
 // Grains that slide, collide and hit the grains of a base, periodic in x and y.
-dem::DemState small_chute(double dt, int copies = 1) {
+dem::DemState small_chute(double dt, int copies = 1, bool alike = false) {
   dem::DemState s;
   s.box = {.origin = {0, 0, 0}, .length = {4.0 * copies, 4, 1}, .periodic = {true, true, false}};
   s.gravity = {0.4, 0, -0.9};
@@ -37,7 +37,7 @@ dem::DemState small_chute(double dt, int copies = 1) {
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 4 * copies; ++i, ++item)
         add({i + 0.5 + 0.01 * u(0), j + 0.5 + 0.01 * u(1), k + 0.45 + 0.01 * u(2)}, {1 + u(3), u(4), u(5)},
-            0.98 + 0.015 * u(6));
+            alike ? 0.97 : 0.98 + 0.015 * u(6));
   s.grains.flowing = static_cast<std::int64_t>(item);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4 * copies; ++i, ++item)
@@ -98,22 +98,26 @@ TEST(ProfileOfARunningEngine, IsThatOfItsSnapshotsSampleAfterSample) {
   expect_same(direct, plain, 1e-13);
 }
 
-// Grains of several sizes, contacts with the base, level contacts, more than one slab and an odd number of them.
+// Grains of several sizes and grains that are alike, contacts with the base, level contacts, more than one slab and an odd
+// number of them.
 TEST(ProfileFromInsideTheFastEngine, IsThatOfItsSnapshotsWhateverTheThreads) {
   const auto laws = soft_laws();
   const int threads_before = threads();
-  for (const int copies : {1, 9}) {
+  for (const auto& [copies, alike] : {std::pair{1, false}, {9, false}, {1, true}, {9, true}}) {
     std::vector<double> bits;
     for (const int count : {1, 2, 3}) {
       set_threads(count);
-      dem::DemState s = small_chute(2e-3, copies), twin = s;
+      dem::DemState s = small_chute(2e-3, copies, alike), twin = s;
       dem::prepare(s, laws);
       dem::prepare(twin, laws);
       const laws::CgKernels::Any kernel = laws::CgGaussian{0.4};
       auto inside = cg::make_moments(kernel, cg::make_lattice(kernel, 0.25), s.box), outside = inside;
       cg::ProfileScratch scratch, other;
       dem::Watch watch{.first = 50, .last = 200, .every = 50};
-      watch.fast = [&](const dem::fast::Engine& engine) { cg::add_rows(inside, engine, scratch); };
+      watch.fast = [&](const dem::fast::Engine& engine) {
+        EXPECT_EQ(engine.alike, alike);
+        cg::add_rows(inside, engine, scratch);
+      };
       dem::advance(s, laws, 230, watch);
       for (int sample = 0; sample < 4; ++sample) {
         dem::advance(twin, laws, 50);
