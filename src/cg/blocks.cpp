@@ -45,6 +45,12 @@ void BlockedProfile::add(const dem::DemState& state, const dem::ContactLaws& law
   end_sample();
 }
 
+void BlockedProfile::before(const dem::fast::Engine& engine) { begin_rows(engine, scratch_); }
+
+void BlockedProfile::add(std::size_t section, dem::fast::ContactPacks contacts) {
+  add_section(current_, section, contacts, scratch_);
+}
+
 void BlockedProfile::add(const dem::fast::Engine& engine) {
   begin_sample(static_cast<double>(engine.step) * engine.dt);
   add_rows(current_, engine, scratch_);

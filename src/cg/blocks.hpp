@@ -29,8 +29,10 @@ class BlockedProfile {
 
   void add(const Snapshot& snapshot);
   void add(const dem::DemState& state, const dem::ContactLaws& laws);  // of a running engine,
-  void add(const dem::fast::Engine& engine);                           // of a fast one from inside
-  std::int64_t samples() const;                                        // so far, the unfinished block included
+  void before(const dem::fast::Engine& engine);  // of a fast one from inside: the stages of dem::Watch
+  void add(std::size_t section, dem::fast::ContactPacks contacts);
+  void add(const dem::fast::Engine& engine);
+  std::int64_t samples() const;  // so far, the unfinished block included
   const laws::CgKernels::Any& kernel() const { return current_.kernel; }
   const Lattice& lattice() const { return current_.lattice; }
   std::int64_t complete_blocks() const { return static_cast<std::int64_t>(scalars_.size()) / scalars_per_block; }

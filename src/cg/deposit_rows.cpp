@@ -144,47 +144,13 @@ void share_pack(const ContactPack& c, double least_height, std::vector<dem::Cont
   }
 }
 
-void share_section(const dem::fast::Engine& engine, std::size_t section, double least_height, ProfileScratch& w) {
-  w.special[section].clear();
-  w.contacts[section] = 0;
-  std::array<ContactPack, 16> packs;
-  std::size_t from = 0;
-  while (const std::size_t count = dem::fast::look_at_contacts(engine, section, from, packs)) {
-    ask_for_shares(w, packs[0]);
-    for (std::size_t p = 0; p < count; ++p) {
-      if (p + 1 < count) ask_for_shares(w, packs[p + 1]);
-      w.contacts[section] += __builtin_popcount(packs[p].touching);
-      share_pack(packs[p], least_height, w.special[section], w);
-    }
-  }
-}
-
 template <bool alike>
 void add(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) {
   const RowGrains<alike> grains(engine);
-  const std::size_t sections = engine.sections.size();
   w.ranges.clear();
   for (const auto& slab : engine.slabs) w.ranges.emplace_back(slab.begin, slab.moving_end);
   sort_by_bin(p, grains, w);
-
-  prepare_shares(w, engine.rows.size());
-  w.flows.assign(engine.rows.size(), 0);
-  for (const auto& [begin, end] : w.ranges) std::fill(w.flows.begin() + begin, w.flows.begin() + end, std::uint8_t{1});
-  w.special.resize(sections);
-  w.contacts.resize(sections);
-  const double least_height = level(p);
-  // Sections share slabs with their neighbours in the ring: every other one at a time, always in this order.
-  const auto share_every_other = [&](std::size_t first, std::size_t last) {
-    parallel_for(
-        static_cast<std::int64_t>((last - first + 1) / 2),
-        [&](std::int64_t n) { share_section(engine, first + 2 * static_cast<std::size_t>(n), least_height, w); },
-        engine.grain.size() >= 500);
-  };
-  share_every_other(0, sections - sections % 2);
-  share_every_other(1, std::max<std::size_t>(sections, 1));
-  if (sections % 2 == 1) share_every_other(sections - 1, sections);
-
-  for (std::size_t s = 0; s < sections; ++s) {
+  for (std::size_t s = 0; s < engine.sections.size(); ++s) {
     p.contacts += static_cast<double>(w.contacts[s]);
     for (const dem::ContactForce& c : w.special[s]) {
       const auto i = static_cast<std::size_t>(c.i);
@@ -199,6 +165,28 @@ void add(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) 
 }
 
 }  // namespace
+
+void begin_rows(const dem::fast::Engine& engine, ProfileScratch& w) {
+  prepare_shares(w, engine.rows.size());
+  w.flows.assign(engine.rows.size(), 0);
+  for (const auto& slab : engine.slabs)
+    std::fill(w.flows.begin() + static_cast<std::ptrdiff_t>(slab.begin),
+              w.flows.begin() + static_cast<std::ptrdiff_t>(slab.moving_end), std::uint8_t{1});
+  w.special.resize(engine.sections.size());
+  w.contacts.resize(engine.sections.size());
+}
+
+void add_section(const ProfileMoments& p, std::size_t section, dem::fast::ContactPacks packs, ProfileScratch& w) {
+  w.special[section].clear();
+  w.contacts[section] = 0;
+  const double least_height = level(p);
+  if (!packs.empty()) ask_for_shares(w, packs[0]);
+  for (std::size_t k = 0; k < packs.size(); ++k) {
+    if (k + 1 < packs.size()) ask_for_shares(w, packs[k + 1]);
+    w.contacts[section] += __builtin_popcount(packs[k].touching);
+    share_pack(packs[k], least_height, w.special[section], w);
+  }
+}
 
 void add_rows(ProfileMoments& p, const dem::fast::Engine& engine, ProfileScratch& w) {
   engine.alike ? add<true>(p, engine, w) : add<false>(p, engine, w);

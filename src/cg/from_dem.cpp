@@ -35,6 +35,9 @@ dem::Watch ProfileObserver::watch(const dem::ContactLaws& laws) {
           .last = options_.last_step,
           .every = options_.every,
           .plain = [this, &laws](const dem::DemState& state) { profile_.add(state, laws); },
+          .fast_before = [this](const dem::fast::Engine& engine) { profile_.before(engine); },
+          .fast_contacts = [this](const dem::fast::Engine&, std::size_t section,
+                                  dem::fast::ContactPacks contacts) { profile_.add(section, contacts); },
           .fast = [this](const dem::fast::Engine& engine) { profile_.add(engine); }};
 }
 

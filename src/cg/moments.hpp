@@ -27,7 +27,7 @@
 #include "core/arrays.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/contacts.hpp"
-#include "dem/fast/look.hpp"
+#include "dem/fast/contact_pack.hpp"
 #include "laws/registries.hpp"
 
 namespace bagnold::cg {
@@ -91,7 +91,11 @@ void add_snapshot(ProfileMoments& moments, const Snapshot& snapshot, ProfileScra
 // The same from a running engine, without the copies a Snapshot needs: from its state,
 void add_state(ProfileMoments& moments, const dem::DemState& state, const dem::ContactLaws& laws,
                ProfileScratch& scratch);
-// and from inside the fast one. The result does not depend on the number of threads.
+// and from inside the fast one, in the three stages of dem::Watch: begin, the contacts of every section as they come, and the
+// grains. The result does not depend on the number of threads.
+void begin_rows(const dem::fast::Engine& engine, ProfileScratch& scratch);
+void add_section(const ProfileMoments& moments, std::size_t section, dem::fast::ContactPacks packs,
+                 ProfileScratch& scratch);
 void add_rows(ProfileMoments& moments, const dem::fast::Engine& engine, ProfileScratch& scratch);
 void clear(ProfileMoments& moments);                               // keeps the bins
 void add_moments(ProfileMoments& to, const ProfileMoments& from);  // of the same kernel and lattice

@@ -5,20 +5,22 @@
 #include <functional>
 
 #include "dem/contact_model.hpp"
+#include "dem/fast/contact_pack.hpp"
 #include "dem/state.hpp"
 
 namespace bagnold::dem {
-
-namespace fast {
-struct Engine;
-}
 
 // Looks at a run from inside, after steps first, first + every, ... up to last; the engine at work calls its function
 // and neither knows what it is for nor is changed by it.
 struct Watch {
   std::int64_t first = 0, last = -1, every = 1;
   std::function<void(const DemState&)> plain;
-  std::function<void(const fast::Engine&)> fast;  // dem/fast/engine.hpp, look.hpp
+  // Of the fast engine (dem/fast/engine.hpp): before the steps that lead to the one looked at; with the contacts of a section as
+  // soon as they have their forces, by any thread, but never for two sections at once that share a slab; and after the step.
+  // The first two may be left out.
+  std::function<void(const fast::Engine&)> fast_before;
+  std::function<void(const fast::Engine&, std::size_t section, fast::ContactPacks)> fast_contacts;
+  std::function<void(const fast::Engine&)> fast;
 
   // Next step after `step` that is looked at; none if it is later than `last`.
   std::int64_t next(std::int64_t step) const {

@@ -114,6 +114,10 @@ TEST(ProfileFromInsideTheFastEngine, IsThatOfItsSnapshotsWhateverTheThreads) {
       auto inside = cg::make_moments(kernel, cg::make_lattice(kernel, 0.25), s.box), outside = inside;
       cg::ProfileScratch scratch, other;
       dem::Watch watch{.first = 50, .last = 200, .every = 50};
+      watch.fast_before = [&](const dem::fast::Engine& engine) { cg::begin_rows(engine, scratch); };
+      watch.fast_contacts = [&](const dem::fast::Engine&, std::size_t section, dem::fast::ContactPacks contacts) {
+        cg::add_section(inside, section, contacts, scratch);
+      };
       watch.fast = [&](const dem::fast::Engine& engine) {
         EXPECT_EQ(engine.alike, alike);
         cg::add_rows(inside, engine, scratch);

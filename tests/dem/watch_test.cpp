@@ -7,7 +7,6 @@
 
 #include "dem/contacts.hpp"
 #include "dem/fast/engine.hpp"
-#include "dem/fast/look.hpp"
 #include "helpers.hpp"
 
 namespace bagnold::dem {
@@ -80,22 +79,18 @@ TEST(Watch, RowsAndContactsAreThoseOfTheState) {
         const double* at = &engine.rows.position[fast::position_doubles * engine.row[i]];
         x.push_back({at[0], at[1], at[2]});
       }
-      for (std::size_t section = 0; section < engine.sections.size(); ++section) {
-        std::array<fast::ContactPack, 3> packs;
-        std::size_t from = 0;
-        while (const std::size_t count = fast::look_at_contacts(engine, section, from, packs)) {
-          for (std::size_t p = 0; p < count; ++p)
-            for (std::size_t k = 0; k < 8; ++k) {
-              if ((packs[p].touching >> k & 1) == 0) continue;
-              const auto lane = [k](const fast::ContactPack::Vector& a) { return Vec3{a[0][k], a[1][k], a[2][k]}; };
-              const int i = engine.grain[packs[p].i[k]], j = engine.grain[packs[p].j[k]];
-              const double sign = i < j ? 1 : -1;
-              met[{std::min(i, j), std::max(i, j)}] = {sign * lane(packs[p].branch), sign * lane(packs[p].normal),
-                                                       sign * lane(packs[p].force)};
-              overlaps += packs[p].overlap[k];
-            }
+    };
+    watch.fast_contacts = [&](const fast::Engine& engine, std::size_t, fast::ContactPacks packs) {
+      for (const fast::ContactPack& pack : packs)
+        for (std::size_t k = 0; k < 8; ++k) {
+          if ((pack.touching >> k & 1) == 0) continue;
+          const auto lane = [k](const fast::ContactPack::Vector& a) { return Vec3{a[0][k], a[1][k], a[2][k]}; };
+          const int i = engine.grain[pack.i[k]], j = engine.grain[pack.j[k]];
+          const double sign = i < j ? 1 : -1;
+          met[{std::min(i, j), std::max(i, j)}] = {sign * lane(pack.branch), sign * lane(pack.normal),
+                                                   sign * lane(pack.force)};
+          overlaps += pack.overlap[k];
         }
-      }
     };
     advance(s, material.laws, 321, watch);
     ASSERT_EQ(x.size(), s.grains.x.size());

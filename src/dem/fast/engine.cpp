@@ -130,19 +130,26 @@ void with_kernel(const Engine& engine, F&& f) {
   });
 }
 
-// Adds the forces of section a.
+// Adds the forces of section a, and shows its contacts to a watch.
 template <class K, class Tables>
-void act(Engine& engine, const Tables& tables, std::size_t a, Scratch& scratch) {
+void act(Engine& engine, const Tables& tables, std::size_t a, Scratch& scratch, const Watch* watch = nullptr) {
   Section& section = engine.sections[a];
   const KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
   const Batches pairs{section.inner.i.data(), section.inner.j.data(), section.kind.data(), section.history.data(),
                       section.inner.count};
-  scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input));
+  if (watch == nullptr) {
+    scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input));
+    return;
+  }
+  if (scratch.packs.size() < pairs.count / batch + 1) scratch.packs.resize(pairs.count / batch * 5 / 4 + 8);
+  std::size_t packs = 0;
+  scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input, scratch.packs.data(), packs));
+  watch->fast_contacts(engine, a, ContactPacks(scratch.packs.data(), packs));
 }
 
-// Steps [from, to) of an epoch.
+// Steps [from, to) of an epoch; `watch` if the last is looked at.
 template <class K, class Tables>
-void pass(Engine& engine, const Tables& tables, int from, int to) {
+void pass(Engine& engine, const Tables& tables, int from, int to, const Watch* watch) {
   const auto move = [&](int s, int t) {
     Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
     const double kick = engine.step + t - from == 0 ? 0.5 * engine.dt : engine.dt;  // the first step closes no other
@@ -151,20 +158,21 @@ void pass(Engine& engine, const Tables& tables, int from, int to) {
     slab.drift.step(engine.dt, slab.acceleration);
     --slab.steps_left;
   };
-  const auto forces = [&](int s, int) {
+  if (watch != nullptr && !watch->fast_contacts) watch = nullptr;
+  const auto forces = [&](int s, int t) {
     const auto a = static_cast<std::size_t>(s), b = static_cast<std::size_t>(engine.ring.wrap(s + 1));
     Section& section = engine.sections[a];
     Scratch& scratch = engine.scratch[static_cast<std::size_t>(omp_get_thread_num())];
     section.mid_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
     section.inner_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
     if (!section.mid_valid.holds() || !section.inner_valid.holds()) refresh(engine, a, scratch);
-    act<K>(engine, tables, a, scratch);
+    act<K>(engine, tables, a, scratch, t == to - 1 ? watch : nullptr);
   };
   sweep(engine.ring, from, to, engine.grain.size() >= 500, move, forces);
 }
 
-void pass(Engine& engine, int from, int to) {
-  with_kernel(engine, [&]<class K>(const auto& tables) { pass<K>(engine, tables, from, to); });
+void pass(Engine& engine, int from, int to, const Watch* watch) {
+  with_kernel(engine, [&]<class K>(const auto& tables) { pass<K>(engine, tables, from, to, watch); });
 }
 
 // Whether the outer list is sure to hold for the next epoch.
@@ -238,10 +246,12 @@ void take_steps(Engine& engine, DemState& state, std::int64_t steps, const Watch
     }
     const std::int64_t stop = watch.next_stop(engine.step, end);
     const auto count = static_cast<int>(std::min<std::int64_t>(engine.ring.levels - level, stop - engine.step));
-    pass(engine, level, level + count);
+    const bool looked_at = watch.sees(engine.step + count);
+    if (looked_at && watch.fast_before) watch.fast_before(engine);
+    pass(engine, level, level + count, looked_at ? &watch : nullptr);
     engine.step += count;
     check(engine, state);
-    if (watch.sees(engine.step)) watch.fast(engine);
+    if (looked_at) watch.fast(engine);
   }
 }
 

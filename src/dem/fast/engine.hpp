@@ -42,6 +42,7 @@ struct Scratch {
   Aligned<std::uint32_t> kind;
   Aligned<double> history;
   std::vector<std::uint32_t> place;  // by outer pair: where its history was
+  std::vector<ContactPack> packs;    // of a section that is looked at
   double excess = 0;
 };
 

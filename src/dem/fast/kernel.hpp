@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "dem/contact_laws.hpp"
+#include "dem/fast/contact_pack.hpp"
 #include "dem/fast/lists.hpp"
 
 #pragma GCC diagnostic push
@@ -140,10 +141,10 @@ struct Kernel {
   }
 
   // Force and torques of a batch, 0 where the pair does not touch; its history moves on by dt. Returns the overlaps in
-  // excess of the permitted one.
-  template <class Law>
+  // excess of the permitted one. `record`: also what an observer wants to know but for the rows.
+  template <bool record, class Law>
   static Lanes interact(const Law& law, const double* from, const Lanes& dt, const Lanes& overlap_ratio, double* memory,
-                        double* to) {
+                        double* to, ContactPack* seen) {
     const Lanes zero = 0.0;
     const Vec3Of<Lanes> nothing{zero, zero, zero};
     Motion m{load(from), load(from + 24), load(from + 48), nothing, Lanes::load(from + 72), zero, 1.0};
@@ -166,6 +167,13 @@ struct Kernel {
     store(select(touching, force.force, nothing), to);
     store(select(touching, force.torque_i, nothing), to + 24);
     if constexpr (!symmetric) store(select(touching, force.torque_j, nothing), to + 48);
+    if constexpr (record) {
+      store(m.r, seen->branch[0].data());
+      store(geometry.n, seen->normal[0].data());
+      store(force.force, seen->force[0].data());
+      geometry.overlap.store(seen->overlap.data());
+      seen->touching = to_integer(touching);
+    }
     const Lanes smaller = EqualRadii ? m.reach : m.reach - abs(m.size_difference);  // twice the smaller radius
     return geometry.overlap - overlap_ratio * (Lanes(0.5) * smaller);
   }
@@ -180,20 +188,35 @@ struct Kernel {
   // Adds what the pairs do to the force rows, moves their history on by dt. Returns by how much the largest overlap
   // exceeds the permitted one.
   static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input) {
-    if (pairs.count == 0) return -1;
-    return act(rows.position.data(), rows.velocity.data(), rows.force.data(), pairs.i, pairs.j, pairs.kind,
-               pairs.history, pairs.count, tables, input);
+    std::size_t none = 0;
+    return pairs.count == 0 ? -1 : act<false>(rows, pairs, tables, input, nullptr, none);
+  }
+  // The same, with the contacts: `seen` has room for a pack per batch, `packs` of them are written.
+  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input, ContactPack* seen,
+                    std::size_t& packs) {
+    packs = 0;
+    return pairs.count == 0 ? -1 : act<true>(rows, pairs, tables, input, seen, packs);
+  }
+
+ private:
+  template <bool record>
+  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input, ContactPack* seen,
+                    std::size_t& packs) {
+    return act<record>(rows.position.data(), rows.velocity.data(), rows.force.data(), pairs.i, pairs.j, pairs.kind,
+                       pairs.history, pairs.count, tables, input, seen, packs);
   }
 
   // The law on a batch is one long chain of operations, each waiting for the last, while fetching rows and adding to rows
   // wait for memory and shuffles. So every turn takes three batches: it adds up the last, acts on the present and
   // collects the next, none of which needs the others, and the compiler mixes them (module.cmake asks it to). It may
   // because nothing here overlaps in memory: __restrict.
+  template <bool record>
   [[gnu::flatten, gnu::noinline]] static double act(const double* __restrict position,
                                                     const double* __restrict velocity, double* __restrict force,
                                                     const Offset* __restrict i, const Offset* __restrict j,
                                                     const std::uint32_t* __restrict kind, double* __restrict history,
-                                                    std::size_t count, const Tables& tables, const KernelInput input) {
+                                                    std::size_t count, const Tables& tables, const KernelInput input,
+                                                    ContactPack* __restrict seen, std::size_t& packs) {
     const Lanes dt = input.dt, ratio = input.overlap_ratio;
     auto law = pack_laws(tables, [&](std::size_t c) { return Lanes(input.constants[c]); });
     Lanes excess = -1.0;
@@ -208,7 +231,16 @@ struct Kernel {
       now = collected * batch - now;
       const std::size_t next = std::min(p + batch, last);
       deposit(force, i + before, j + before, out);
-      excess = max(excess, interact(law, from, dt, ratio, history + p * history_numbers, out));
+      excess = max(excess, interact<record>(law, from, dt, ratio, history + p * history_numbers, out, seen));
+      if constexpr (record) {
+        for (std::size_t k = 0; k < batch; ++k) {
+          seen->i[k] = static_cast<std::uint32_t>(row_of(i[p + k]));
+          seen->j[k] = static_cast<std::uint32_t>(row_of(j[p + k]));
+        }
+        const std::size_t kept = seen->touching != 0 ? 1 : 0;
+        seen += kept;
+        packs += kept;
+      }
       collect(position, velocity, i + next, j + next, input.images, in + now);
       before = p;
     }
