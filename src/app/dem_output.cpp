@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/mass_quantile.hpp"
 #include "dem/contacts.hpp"
 #include "dem/energy.hpp"
 #include "io/hdf5.hpp"
@@ -175,29 +176,24 @@ std::vector<std::pair<std::string, std::string>> write_dem_vtk(const std::filesy
 
 namespace {
 
-// Front and height of a spreading column: the radius within which 99 % of the mass lies, and the top of the pile.
+// Front and height of a spreading column: the radii that hold 50, 90 and 99 % of the mass, and the top of the pile.
 void add_column(nlohmann::ordered_json& summary, const DemInput& in) {
   const dem::Grains& g = in.state.grains;
   std::vector<std::pair<double, double>> by_radius;
-  double mass = 0, top = 0;
+  double top = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(g.flowing); ++i) {
     by_radius.emplace_back(std::hypot(g.x[i].x, g.x[i].y), g.mass[i]);
-    mass += g.mass[i];
     top = std::max(top, g.x[i].z + 0.5 * g.diameter[i]);
   }
-  std::sort(by_radius.begin(), by_radius.end());
-  double within = 0, front = 0;
-  for (const auto& [r, m] : by_radius) {
-    if (within >= 0.99 * mass) break;
-    within += m;
-    front = r;
-  }
+  const MassQuantiles radius(std::move(by_radius));
+  const double r0 = in.column_radius, front = radius.at(0.99);
   nlohmann::ordered_json column;
-  const double r0 = in.column_radius;
   if (in.scenario == "column") column["aspect_ratio"] = in.column_height / r0;
   column["r0"] = r0;
   column["r_final"] = front;
-  column["runout"] = (front - r0) / r0;
+  column["runout"] = front / r0 - 1;
+  column["runout_90"] = radius.at(0.9) / r0 - 1;
+  column["runout_50"] = radius.at(0.5) / r0 - 1;
   column["height_final"] = top;
   column["slope_deg"] = std::atan2(top, front) * 180 / M_PI;
   summary[in.scenario] = column;
@@ -207,19 +203,10 @@ void add_column(nlohmann::ordered_json& summary, const DemInput& in) {
 void add_avalanche(nlohmann::ordered_json& summary, const DemInput& in) {
   const dem::Grains& g = in.state.grains;
   std::vector<std::pair<double, double>> by_x;
-  double mass = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(g.flowing); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(g.flowing); ++i)
     by_x.emplace_back(wrap(in.state.box, g.x[i]).x, g.mass[i]);
-    mass += g.mass[i];
-  }
-  std::sort(by_x.begin(), by_x.end());
-  const auto quantile = [&](double share) {
-    double below = 0;
-    for (const auto& [x, m] : by_x)
-      if ((below += m) >= share * mass) return x;
-    return by_x.back().first;
-  };
-  summary["avalanche"] = {{"tail", quantile(0.01)}, {"middle", quantile(0.5)}, {"front", quantile(0.99)}};
+  const MassQuantiles x(std::move(by_x));
+  summary["avalanche"] = {{"tail", x.at(0.01)}, {"middle", x.at(0.5)}, {"front", x.at(0.99)}};
 }
 
 }  // namespace

@@ -213,6 +213,9 @@ class SphModel final : public Model {
     summary["r_final_layer"] = front.layer;
     summary["runout"] = front.connected / in_.column.radius - 1;
     summary["runout_layer"] = front.layer / in_.column.radius - 1;
+    const MassQuantiles radius = sph::radii(state_, in_.model);
+    summary["runout_90"] = radius.at(0.9) / in_.column.radius - 1;
+    summary["runout_50"] = radius.at(0.5) / in_.column.radius - 1;
     summary["runout_experiment"] = scenario::measured_runout(aspect, in_.geometry);
     summary["height_final"] = front.height;
     summary["speed_rms"] = rms_speed(kinetic_energy(state_, in_.model));

@@ -112,4 +112,12 @@ Front find_front(const State& state, const Work& w, const Model& model) {
   return front;
 }
 
+MassQuantiles radii(const State& state, const Model& model) {
+  const Particles& p = state.particles;
+  std::vector<std::pair<double, double>> by_radius;
+  for (std::size_t i = 0; i < p.mass.size(); ++i)
+    by_radius.emplace_back(horizontal_distance(p, i, static_cast<std::size_t>(model.vertical())), p.mass[i]);
+  return MassQuantiles(std::move(by_radius));
+}
+
 }  // namespace bagnold::sph

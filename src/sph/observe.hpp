@@ -1,5 +1,6 @@
 // What is measured on a state. Nothing here changes it; pressure and the like must be fresh (refresh()).
 #pragma once
+#include "core/mass_quantile.hpp"
 #include "sph/work.hpp"
 
 namespace bagnold::sph {
@@ -21,5 +22,7 @@ struct Front {
   double layer = 0;
 };
 Front find_front(const State& state, const Work& work, const Model& model);
+// Distances of the particles from the axis or the middle, to ask within which a share of the mass lies.
+MassQuantiles radii(const State& state, const Model& model);
 
 }  // namespace bagnold::sph

@@ -118,6 +118,9 @@ TEST(Cases, ColumnTomlSpreadsAndKeepsItsMass) {
   const auto& column = r.summary["column"];
   EXPECT_NEAR(column["aspect_ratio"], 1.0, 1e-12);
   EXPECT_GT(column["runout"], 0.2);
+  EXPECT_LT(column["runout_90"], column["runout"]);
+  EXPECT_LT(column["runout_50"], column["runout_90"]);
+  EXPECT_GT(column["runout_50"], std::sqrt(0.5) * 0.7 - 1);  // half of the mass of a cylinder is within 0.71 r0
   EXPECT_LT(column["height_final"], 0.018);
 }
 

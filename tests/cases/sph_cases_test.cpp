@@ -64,6 +64,9 @@ TEST_P(ColumnToml, CollapsesOutwards) {
   EXPECT_NEAR(summary["aspect_ratio"], aspect[k], 0.01);
   EXPECT_GT(summary["r_final"], 1.02 * 0.0972);
   EXPECT_GT(summary["runout"], 0.02);
+  EXPECT_LT(summary["runout_90"], summary["runout"]);
+  EXPECT_GT(summary["runout_50"], std::sqrt(0.5) - 1.05);  // half of the mass begins within 0.71 r0
+  EXPECT_LT(summary["runout_50"], summary["runout_90"]);
   EXPECT_LT(summary["height_final"], height[k] + 0.55 * dp);  // whole rows; low columns keep their middle
 }
 
