@@ -9,6 +9,7 @@ sph::Material read_material(const config::Section& section) {
   sph::Material m;
   m.grain_diameter = section.get<double>("grain_diameter", 0.32e-3, positive(), "m");
   m.rheology = section.read_law<laws::Rheologies>("friction", "minatti2015");
+  m.yield_surface = section.read_law<laws::YieldSurfaces>("yield_surface", "drucker_prager");
   m.dilatancy = section.read_law<laws::Dilatancies>("dilatancy", "minatti2015");
   m.eos = section.read_law<laws::GrainEos>("eos", "minatti2015");
   m.regularisation = section.read_law<laws::Regularisations>("regularisation", "minatti2015");
@@ -49,6 +50,7 @@ SphInput read_sph(config::Case& input) {
 
 void add_sph_topics(std::vector<Topic>& topics) {
   add_registry<laws::Rheologies>(topics, "friction of the continuum (material.friction)");
+  add_registry<laws::YieldSurfaces>(topics, "friction and the Lode angle (material.yield_surface)");
   add_registry<laws::Dilatancies>(topics, "volume fraction of the continuum (material.dilatancy)");
   add_registry<laws::GrainEos>(topics, "pressure of the grains (material.eos)");
   add_registry<laws::Regularisations>(topics, "viscosity at rest (material.regularisation)");

@@ -43,6 +43,9 @@
 #include "laws/rheology/mu_i_collisional.hpp"
 #include "laws/viscous/cleary.hpp"
 #include "laws/viscous/variational.hpp"
+#include "laws/yield_surface/drucker_prager.hpp"
+#include "laws/yield_surface/lade_duncan.hpp"
+#include "laws/yield_surface/matsuoka_nakai.hpp"
 
 namespace bagnold::laws {
 
@@ -72,6 +75,10 @@ using ShapeFactorLaws = Registry<ConstantShapeFactor, StrainModelShapeFactor>;
 
 // Friction of continua, mu(i).
 using Rheologies = Registry<rheology::MuI, rheology::MuICollisional>;
+
+// Friction of continua at other Lode angles than that of plane strain.
+using YieldSurfaces =
+    Registry<yield_surface::DruckerPrager, yield_surface::MatsuokaNakai, yield_surface::LadeDuncan>;
 
 // Volume fraction of continua, phi(i).
 using Dilatancies = Registry<dilatancy::Linear, dilatancy::Rational>;

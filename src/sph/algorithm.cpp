@@ -218,6 +218,10 @@ void check(const Model& model) {
   if (!std::visit(range, model.material.dilatancy)) throw UnphysicalError("material.phi_min", "must be below phi_max");
   if (!(std::visit([](const auto& r) { return r.limit_friction() > r.static_friction(); }, model.material.rheology)))
     throw UnphysicalError("material.limit_angle_deg", "must exceed static_angle_deg");
+  if (const double most = std::visit([](const auto& s) { return s.largest_friction; }, model.material.yield_surface);
+      !(model.static_friction() < most))
+    throw UnphysicalError("material.yield_surface",
+                          fmt::format("needs static friction below {:g}; use drucker_prager", most));
 }
 
 double step_limit(const State& state, const Model& model) {

@@ -10,9 +10,10 @@ namespace {
 constexpr std::int64_t block = 512;
 
 // Everything the loop needs, as numbers and laws of known type.
-template <class Rheology, class Dilatancy, class Regularisation>
+template <class Rheology, class Surface, class Dilatancy, class Regularisation>
 struct Laws {
   typename Rheology::Excess excess;
+  typename Surface::Shape shape;
   Dilatancy dilatancy;
   laws::eos::CompressibleGrains grains;
   Regularisation regularisation;
@@ -22,7 +23,7 @@ struct Laws {
 
 // Eight particles: pressure, viscosity and the new root.
 template <class L>
-void eight(const L& law, const Pack& rho, const Pack& gamma, Pack& root, Pack& pressure, Pack& viscosity, Pack& bulk) {
+void eight(const L& law, const Pack& rho, const Pack& gamma, const Pack& lode, Pack& root, Pack& pressure, Pack& viscosity, Pack& bulk) {
   // d/d0 = rho_s*^(-1/D): in 2D it cancels sqrt(rho_s) in i; in 3D rho_s*^(1/6) remains, taken from the last root.
   Pack shear = gamma * law.grains.shear_scale(law.d0);
   if (law.dim == 3)
@@ -35,6 +36,8 @@ void eight(const L& law, const Pack& rho, const Pack& gamma, Pack& root, Pack& p
   const Pack safe = max(root, Pack(1e-12)), a = law.grains.shear_scale(law.d0) / safe;
   const Pack eta0 = pressure * a * law.excess(Pack(gamma * a));
   viscosity = law.regularisation.viscosity(Pack(law.static_friction * pressure), eta0, gamma);
+  if constexpr (!decltype(law.shape)::circular)
+    for (int k = 0; k < Pack::lanes; ++k) viscosity.set(k, viscosity[k] * law.shape(lode[k]));
   // dp/dgamma = 2 p/gamma sensitivity, finite at rest
   const Pack dp = 2 * pressure * laws::eos::sensitivity(cubic, safe) / max(gamma, Pack(1e-12));
   bulk = law.bulk * viscosity + law.dilatant * dp;
@@ -55,8 +58,9 @@ double sweep(const L& law, Work& w, Particles& p) {
       };
       // lanes beyond the last particle are filled with loose material: no pressure, no viscosity
       const Pack rho = load(p.rho, 0.1 * law.grains.grain_density), gamma = load(w.shear_rate, 0);
-      Pack root = load(p.root, 0), pressure, viscosity, bulk;
-      eight(law, rho, gamma, root, pressure, viscosity, bulk);
+      Pack root = load(p.root, 0), lode{}, pressure, viscosity, bulk;
+      if constexpr (!decltype(law.shape)::circular) lode = load(w.lode, 0);
+      eight(law, rho, gamma, lode, root, pressure, viscosity, bulk);
       std::memcpy(p.root.data() + i, &root, lanes * sizeof(double));
       std::memcpy(w.pressure.data() + i, &pressure, lanes * sizeof(double));
       std::memcpy(w.viscosity.data() + i, &viscosity, lanes * sizeof(double));
@@ -75,15 +79,16 @@ double sweep(const L& law, Work& w, Particles& p) {
 double constitutive(Work& w, Particles& p, const Model& model) {
   const Material& m = model.material;
   return std::visit(
-      [&](const auto& rheology, const auto& dilatancy, const auto& grains, const auto& regularisation,
-          const auto& viscous) {
-        const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(dilatancy)>,
+      [&](const auto& rheology, const auto& surface, const auto& dilatancy, const auto& grains,
+          const auto& regularisation, const auto& viscous) {
+        const double mu_s = rheology.static_friction();
+        const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(surface)>, std::decay_t<decltype(dilatancy)>,
                    std::decay_t<decltype(regularisation)>>
-            law{rheology.excess(), dilatancy,    grains,           regularisation, rheology.static_friction(),
-                m.grain_diameter,  viscous.bulk, viscous.dilatant, model.dim};
+            law{rheology.excess(), surface.shape(mu_s), dilatancy,    grains,           regularisation,
+                mu_s,              m.grain_diameter,    viscous.bulk, viscous.dilatant, model.dim};
         return sweep(law, w, p);
       },
-      m.rheology, m.dilatancy, m.eos, m.regularisation, model.viscous);
+      m.rheology, model.yield_surface(), m.dilatancy, m.eos, m.regularisation, model.viscous);
 }
 
 double inertial_number(const Model& model, double gamma, double root) {

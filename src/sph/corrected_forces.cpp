@@ -236,7 +236,7 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& 
   std::fill_n(records.at(w.pairs.elements(n) - 1), F::size, 0.0);
 }
 
-// sqrt(2 e:e) of the gradients the first sweep left in the records.
+// sqrt(2 e:e) and Lode angle of the gradients the first sweep left in the records.
 template <int D>
 void read_shear_rate(Work& w, const Particles& p, const Model& model, const Field& v) {
   const auto& records = gradient_records<D>(w);
@@ -244,7 +244,9 @@ void read_shear_rate(Work& w, const Particles& p, const Model& model, const Fiel
     const auto i = static_cast<std::size_t>(k);
     Matrix<D> L;
     std::copy_n(records.at(k) + GradientRecord<D>::L, D * D, L.begin());
-    w.shear_rate[i] = shear_rate<D>(L, model.axisymmetric ? v[0][i] * inverse_radius(model, p.x[0][i]) : 0);
+    const double hoop = model.axisymmetric ? v[0][i] * inverse_radius(model, p.x[0][i]) : 0;
+    w.shear_rate[i] = shear_rate<D>(L, hoop);
+    if (!w.lode.empty()) w.lode[i] = lode_parameter<D>(L, hoop);
   });
 }
 

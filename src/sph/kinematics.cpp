@@ -151,6 +151,13 @@ double shear_rate_of_sum(const double* E) {
 }
 
 template <int D>
+double lode_parameter_of_sum(const double* E) {
+  Matrix<D> e = from_upper<D>(E);
+  for (int k = 0; k < D * D; ++k) e[k] *= k % (D + 1) == 0 ? 1 : 0.5;
+  return lode_parameter<D>(e, 0);
+}
+
+template <int D>
 Matrix<D> correction(const Matrix<D>& M, double coverage) {
   const double weight = std::clamp((coverage - blend_from) / (blend_to - blend_from), 0.0, 1.0);
   Matrix<D> B{};
@@ -183,9 +190,13 @@ void store(Work& w, const Particles& p, const Model& model, std::size_t i, const
       w.density_rate[i] = -p.rho[i] * divergence;
       std::copy(L.begin(), L.end(), w.gradient.begin() + static_cast<std::ptrdiff_t>(i * D * D));
       w.shear_rate[i] = shear_rate<D>(L, hoop);
+      if (!w.lode.empty()) w.lode[i] = lode_parameter<D>(L, hoop);
     }
   }
-  if constexpr (At::printed && At::gradients) w.shear_rate[i] = shear_rate_of_sum<D>(sums + At::gradient);
+  if constexpr (At::printed && At::gradients) {
+    w.shear_rate[i] = shear_rate_of_sum<D>(sums + At::gradient);
+    if (!w.lode.empty()) w.lode[i] = lode_parameter_of_sum<D>(sums + At::gradient);
+  }
 }
 
 template <int D, class Kernel, Kinematics what, bool moments>
@@ -226,6 +237,7 @@ void kinematics(Work& w, const Particles& p, const Model& model, Kinematics what
     const auto i = static_cast<std::size_t>(k);
     w.area[i] = model.axisymmetric ? w.volume[i] * inverse_radius(model, p.x[0][i]) / (2 * M_PI) : w.volume[i];
   });
+  if (model.lode_angles()) w.lode.resize(w.shear_rate.size());
   if (what == Kinematics::corrected) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
       w.r[d].resize(w.pairs.index.size() / Pack::lanes);

@@ -11,6 +11,7 @@ namespace bagnold::sph {
 struct Material {
   double grain_diameter = 0.32e-3;  // d0, m
   laws::Rheologies::Any rheology;
+  laws::YieldSurfaces::Any yield_surface;
   laws::Dilatancies::Any dilatancy;
   laws::GrainEos::Any eos;
   laws::Regularisations::Any regularisation;
@@ -87,6 +88,11 @@ struct Model {
   double static_friction() const {
     return std::visit([](const auto& r) { return r.static_friction(); }, material.rheology);
   }
+  // Shape of the yield surface where Lode angles differ; plane flow is plane strain, whatever it dilates.
+  laws::YieldSurfaces::Any yield_surface() const {
+    return dim == 3 || axisymmetric ? material.yield_surface : laws::YieldSurfaces::Any{};
+  }
+  bool lode_angles() const { return !std::holds_alternative<laws::yield_surface::DruckerPrager>(yield_surface()); }
   const laws::eos::CompressibleGrains& grains() const { return std::get<laws::eos::CompressibleGrains>(material.eos); }
   double sound_speed() const { return grains().sound_speed(phi_max()); }
   double gravity_norm() const {

@@ -54,13 +54,35 @@ inline double shear_rate(const Matrix<D>& L, double hoop) {
   return std::sqrt(2 * sum);
 }
 
-// Inverse of a matrix that has one.
-inline Matrix<2> inverse(const Matrix<2>& m) {
-  const double d = 1 / (m[0] * m[3] - m[1] * m[2]);
-  return {m[3] * d, -m[1] * d, -m[2] * d, m[0] * d};
-}
+inline double determinant(const Matrix<2>& m) { return m[0] * m[3] - m[1] * m[2]; }
 inline double determinant(const Matrix<3>& m) {
   return m[0] * (m[4] * m[8] - m[5] * m[7]) + m[1] * (m[5] * m[6] - m[3] * m[8]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
+
+// cos(3 theta) of the symmetric part of L (and the hoop rate), compression positive: 1 in triaxial compression, 0 in
+// plane shear of constant volume, -1 in triaxial extension; 0 where nothing shears.
+template <int D>
+inline double lode_parameter(const Matrix<D>& L, double hoop) {
+  double mean = D == 2 ? hoop : 0, square = 0;
+  for (int a = 0; a < D; ++a) mean += L[a * D + a];
+  mean /= 3;
+  Matrix<D> e;
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) {
+      const int k = a * D + b;
+      e[k] = 0.5 * (L[k] + L[b * D + a]) - (a == b ? mean : 0);
+      square += e[k] * e[k];
+    }
+  const double out_of_plane = D == 2 ? hoop - mean : 1;
+  if constexpr (D == 2) square += out_of_plane * out_of_plane;
+  const double norm = std::sqrt(square / 2), cube = norm * norm * norm;
+  return cube > 0 ? std::clamp(-1.5 * std::sqrt(3.0) * determinant(e) * out_of_plane / cube, -1.0, 1.0) : 0;
+}
+
+// Inverse of a matrix that has one.
+inline Matrix<2> inverse(const Matrix<2>& m) {
+  const double d = 1 / determinant(m);
+  return {m[3] * d, -m[1] * d, -m[2] * d, m[0] * d};
 }
 inline Matrix<3> inverse(const Matrix<3>& m) {
   const Matrix<3> c{m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],

@@ -18,6 +18,7 @@ struct Work {
   std::vector<double> volume, area;
   std::vector<double> density_rate;         // D rho/Dt
   std::vector<double> shear_rate;           // sqrt(2 e:e), 1/s
+  std::vector<double> lode;                 // cos(3 theta) of the strain rate, where the law asks for it
   std::vector<double> pressure, viscosity;  // Pa, Pa s
   std::vector<double> bulk;                 // bulk viscosity, Pa s
   std::vector<double> coverage;             // smallest eigenvalue of M: 1 inside, 0.5 at a free surface, 0 alone
