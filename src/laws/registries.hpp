@@ -77,8 +77,7 @@ using ShapeFactorLaws = Registry<ConstantShapeFactor, StrainModelShapeFactor>;
 using Rheologies = Registry<rheology::MuI, rheology::MuICollisional>;
 
 // Friction of continua at other Lode angles than that of plane strain.
-using YieldSurfaces =
-    Registry<yield_surface::DruckerPrager, yield_surface::MatsuokaNakai, yield_surface::LadeDuncan>;
+using YieldSurfaces = Registry<yield_surface::DruckerPrager, yield_surface::MatsuokaNakai, yield_surface::LadeDuncan>;
 
 // Volume fraction of continua, phi(i).
 using Dilatancies = Registry<dilatancy::Linear, dilatancy::Rational>;

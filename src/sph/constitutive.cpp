@@ -23,7 +23,8 @@ struct Laws {
 
 // Eight particles: pressure, viscosity and the new root.
 template <class L>
-void eight(const L& law, const Pack& rho, const Pack& gamma, const Pack& lode, Pack& root, Pack& pressure, Pack& viscosity, Pack& bulk) {
+void eight(const L& law, const Pack& rho, const Pack& gamma, const Pack& lode, Pack& root, Pack& pressure,
+           Pack& viscosity, Pack& bulk) {
   // d/d0 = rho_s*^(-1/D): in 2D it cancels sqrt(rho_s) in i; in 3D rho_s*^(1/6) remains, taken from the last root.
   Pack shear = gamma * law.grains.shear_scale(law.d0);
   if (law.dim == 3)
@@ -84,8 +85,8 @@ double constitutive(Work& w, Particles& p, const Model& model) {
         const double mu_s = rheology.static_friction();
         const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(surface)>, std::decay_t<decltype(dilatancy)>,
                    std::decay_t<decltype(regularisation)>>
-            law{rheology.excess(), surface.shape(mu_s), dilatancy,    grains,           regularisation,
-                mu_s,              m.grain_diameter,    viscous.bulk, viscous.dilatant, model.dim};
+            law{rheology.excess(), surface.shape(mu_s), dilatancy,        grains,   regularisation, mu_s,
+                m.grain_diameter,  viscous.bulk,        viscous.dilatant, model.dim};
         return sweep(law, w, p);
       },
       m.rheology, model.yield_surface(), m.dilatancy, m.eos, m.regularisation, model.viscous);

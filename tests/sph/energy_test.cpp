@@ -24,7 +24,10 @@ std::vector<Ledgered> columns() {
   printed.numerics.artificial_viscosity = 0.1;
   Model stepped = Model{};
   stepped.stepping = Stepping::implicit;
+  Model cone = full;
+  cone.material.yield_surface = laws::yield_surface::MatsuokaNakai{};
   return {{"axisymmetric", scenario::ColumnGeometry::axisymmetric, full},
+          {"axisymmetric, friction by Lode angle", scenario::ColumnGeometry::axisymmetric, cone},
           {"planar", scenario::ColumnGeometry::planar, full},
           {"explicit", scenario::ColumnGeometry::planar, euler},
           {"printed", scenario::ColumnGeometry::planar, printed},

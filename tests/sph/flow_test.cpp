@@ -136,11 +136,14 @@ TEST(Flow, TransientTendsToTheSteadyProfile) {
 }
 
 TEST(Exactness, SameBitsWhateverTheThreadsAndAfterRestart) {
-  for (const int which : {0, 1, 2, 3}) {
+  Model cone = improved(Model{});
+  cone.material.yield_surface = laws::yield_surface::MatsuokaNakai{};
+  for (const int which : {0, 1, 2, 3, 4}) {
     const auto fresh = [&] {
       if (which == 0) return start(small_plane, incline_model());
       if (which == 1) return start(small_plane, improved(incline_model()));
       if (which == 2) return start(small_column, scenario::ColumnGeometry::axisymmetric, improved(Model{}));
+      if (which == 3) return start(small_column, scenario::ColumnGeometry::axisymmetric, cone);
       return start(scenario::ContinuumColumn{.radius = 0.012, .height = 0.012, .spacing = 3e-3},
                    scenario::ColumnGeometry::cylinder, improved(Model{}));
     };
