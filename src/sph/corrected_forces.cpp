@@ -123,7 +123,7 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
 
 // First sweep: L = S B.
 template <int D>
-void gradient_sweep(Work& w, const Particles& p, const Field& v) {
+void gradient_sweep(Work& w, const Particles& p, const Model& model, const Field& v) {
   using F = GradientRecord<D>;
   auto& records = gradient_records<D>(w);
   const std::int64_t n = p.size();
@@ -154,7 +154,7 @@ void gradient_sweep(Work& w, const Particles& p, const Field& v) {
     Matrix<D> s;
     for (std::size_t m = 0; m < s.size(); ++m) s[m] = lane_sum(S[m]);
     const Matrix<D> B = matrix_at<D>(w.correction, k);
-    const Matrix<D> L = w.coverage[static_cast<std::size_t>(k)] < blend_to
+    const Matrix<D> L = may_turn(w, p, model, static_cast<std::size_t>(k))
                             ? gradient<D>(s, matrix_at<D>(w.moment, k), B)
                             : product<D>(s, B);
     double* to = records.at(k);
@@ -220,7 +220,7 @@ void stress_sweep(Work& w, const Particles& p, const Model& model, const Field& 
                        0.5 * lane_sum(H[a * D + b]);
     const Matrix<D> B = matrix_at<D>(w.correction, k);
     const Matrix<D> TB =
-        w.coverage[i] < blend_to ? gradient_adjoint<D>(T, matrix_at<D>(w.moment, k), B) : product<D>(T, B);
+        may_turn(w, p, model, i) ? gradient_adjoint<D>(T, matrix_at<D>(w.moment, k), B) : product<D>(T, B);
     for (std::size_t d = 0; d < D; ++d) force[d][i] = -lane_sum(sum[d]);
     force[0][i] -= (twice * (hoop - trace) + mean) * ir;
     double* to = records.at(k);
@@ -288,7 +288,7 @@ void force_sweep(Work& w, const Particles& p, Field& force) {
 
 template <int D>
 void viscous_sweeps(Work& w, const Particles& p, const Model& model, const Field& v, Field& force) {
-  gradient_sweep<D>(w, p, v);
+  gradient_sweep<D>(w, p, model, v);
   stress_sweep<D>(w, p, model, v, force);
   force_sweep<D>(w, p, force);
 }
@@ -311,9 +311,9 @@ void corrected_pressure_and_coefficients(Work& w, const Particles& p, const Mode
 
 void corrected_shear_rate(Work& w, const Particles& p, const Model& model, const Field& v) {
   if (model.dim == 2)
-    gradient_sweep<2>(w, p, v), read_shear_rate<2>(w, p, model, v);
+    gradient_sweep<2>(w, p, model, v), read_shear_rate<2>(w, p, model, v);
   else
-    gradient_sweep<3>(w, p, v), read_shear_rate<3>(w, p, model, v);
+    gradient_sweep<3>(w, p, model, v), read_shear_rate<3>(w, p, model, v);
 }
 
 LawDissipation corrected_dissipation(const Work& w, const Particles& p, const Model& model, const Field& v) {

@@ -184,7 +184,7 @@ void store(Work& w, const Particles& p, const Model& model, std::size_t i, const
     if constexpr (!At::printed) {
       Matrix<D> S;
       std::copy_n(sums + At::gradient, D * D, S.begin());
-      const Matrix<D> L = w.coverage[i] < blend_to ? gradient<D>(S, M, B) : product<D>(S, B);
+      const Matrix<D> L = may_turn(w, p, model, i) ? gradient<D>(S, M, B) : product<D>(S, B);
       double divergence = hoop;
       for (int d = 0; d < D; ++d) divergence += L[d * D + d];
       w.density_rate[i] = -p.rho[i] * divergence;

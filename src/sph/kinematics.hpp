@@ -21,6 +21,14 @@ void kinematics(Work& work, const Particles& particles, const Model& model, Kine
 // would strain.
 void update_volumes(Work& work, const Particles& particles);
 
+// Whether rotation is told from strain (small_tensor.hpp): where B is not M^-1, but for a lone particle on the floor. With its
+// image, which slides the other way, it would be a wheel, and no friction would ever stop it.
+inline bool may_turn(const Work& work, const Particles& particles, const Model& model, std::size_t i) {
+  constexpr double alone = 0.05;
+  const bool low = model.floor && particles.x[static_cast<std::size_t>(model.vertical())][i] < model.h();
+  return work.coverage[i] < blend_to && !(low && work.coverage[i] < alone);
+}
+
 // 1/r of an axisymmetric ring; particles on the axis count as a tenth of a spacing away from it.
 inline double inverse_radius(const Model& model, double r) { return 1 / std::max(r, 0.1 * model.spacing); }
 

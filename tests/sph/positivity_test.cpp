@@ -176,5 +176,30 @@ TEST(Floor, LoneParticleSlidesToRestByTheLaw) {
   EXPECT_EQ(p.v[0][0], 0);
 }
 
+// One that falls on the floor and is carried by the pressure of its own image slides no farther: pressed by its weight, it
+// feels mu(i) of it, whatever the height at which it comes to rest.
+TEST(Floor, LoneParticleThatFallsIsStoppedToo) {
+  for (const int dim : {2, 3}) {
+    Model m = improved(Model{});
+    m.material.regularisation = laws::regularisation::Minatti2015{795, 1e3};
+    m.numerics.viscosity_rounds = 4;
+    Simulation r{m, {}, {}};
+    set_geometry(small_column, dim == 2 ? scenario::ColumnGeometry::planar : scenario::ColumnGeometry::cylinder,
+                 r.model);
+    r.state.particles = make_particles(1, dim);
+    Particles& p = r.state.particles;
+    const double depth = r.model.spacing, v0 = 1, g = 9.81;
+    const auto up = static_cast<std::size_t>(dim - 1);
+    p.x[up][0] = 2 * depth, p.v[0][0] = v0, p.v[up][0] = -0.3;
+    p.rho[0] = 1354, p.mass[0] = p.rho[0] * std::pow(depth, dim);
+    initialise(r.state, r.work, r.model);
+    advance(r, 0.03);
+    if (dim == 2) EXPECT_GT(p.x[up][0], 0.2 * depth);  // it lies on its image; in 3D it sinks to the floor
+    EXPECT_LT(p.v[0][0], v0);
+    advance(r, 0.03 + v0 / (r.model.static_friction() * g));
+    EXPECT_LT(std::abs(p.v[0][0]), 0.01 * v0);
+  }
+}
+
 }  // namespace
 }  // namespace bagnold::sph::test

@@ -20,15 +20,23 @@ options() {
   case $1 in
     improved-axisymmetric-*) ;; # the case as it is
     fine-axisymmetric-*) echo "--set scenario.spacing=${half_dp[row]}" ;;
+    cone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai" ;; # friction by Lode angle
+    finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
     collisional-axisymmetric-*) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
-    tall[0-9]*-axisymmetric-6) # row 6 made higher: tall4 has a = 4; tall4c with the collisional branch
+    tall[0-9]*-axisymmetric-6 | finetall[0-9]*-axisymmetric-6)
+      # row 6 made higher: tall4 has a = 4; tall4c with the collisional branch, tall4n with friction by Lode angle
       local a=${1%%-*}
+      a=${a#fine}
       a=${a#tall}
-      awk -v a="${a%c}" 'BEGIN { H = 0.0972*a
+      awk -v a="${a%[cn]}" 'BEGIN { H = 0.0972*a
         printf "--set scenario.height=%g --set material.compressibility=%g --set material.tau0=%g ", H, 6.53e-7/H, 9120*H }'
-      [ "$a" = "${a%c}" ] || echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
+      case $1 in
+        tall*c-*) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
+        *n-*) echo "--set material.yield_surface=matsuoka_nakai" ;;
+      esac
+      [ "${1#fine}" = "$1" ] || echo "--set scenario.spacing=${half_dp[row]}" ;;
     literal-planar-* | stepped-planar-*) # as printed; `stepped`: the same equations stepped implicitly
       echo "--set scenario.geometry=planar --set numerics.operator=minatti2015
             --set numerics.shifting=0 --set numerics.volume_correction=0 --set numerics.density_diffusion=0
@@ -45,10 +53,11 @@ options() {
 runs=("$@")
 if [ ${#runs[@]} = 0 ]; then
   for row in 1 2 3 4 5 6; do
-    runs+=(improved-axisymmetric-$row fine-axisymmetric-$row improved-planar-$row literal-planar-$row stepped-planar-$row)
+    runs+=(improved-axisymmetric-$row fine-axisymmetric-$row cone-axisymmetric-$row finecone-axisymmetric-$row improved-planar-$row literal-planar-$row stepped-planar-$row)
   done
   runs+=(improved-cylinder-3 collisional-axisymmetric-5 collisional-axisymmetric-6)
   runs+=(tall4-axisymmetric-6 tall4c-axisymmetric-6 tall6-axisymmetric-6 tall6c-axisymmetric-6)
+  runs+=(tall4n-axisymmetric-6 tall6n-axisymmetric-6 finetall4n-axisymmetric-6 finetall6n-axisymmetric-6)
 fi
 for run in "${runs[@]}"; do
   grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
