@@ -32,9 +32,9 @@ options() {
       a=${a#tall}
       awk -v a="${a%[cn]}" 'BEGIN { H = 0.0972*a
         printf "--set scenario.height=%g --set material.compressibility=%g --set material.tau0=%g ", H, 6.53e-7/H, 9120*H }'
-      case $1 in
-        tall*c-*) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
-        *n-*) echo "--set material.yield_surface=matsuoka_nakai" ;;
+      case ${1%%-*} in
+        *c) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
+        *n) echo "--set material.yield_surface=matsuoka_nakai" ;;
       esac
       [ "${1#fine}" = "$1" ] || echo "--set scenario.spacing=${half_dp[row]}" ;;
     literal-planar-* | stepped-planar-*) # as printed; `stepped`: the same equations stepped implicitly
