@@ -19,12 +19,16 @@ options() {
     literal-alpha*-*s) # literal-alphaALPHA-TIMEs
       local a=${1#literal-alpha} t=${1##*-}
       echo "--set time.end=${t%s} $literal --set numerics.artificial_viscosity=${a%-*}" ;;
+    responding-steady) # exact operators with the friction the printed ones act like, (a/b^2) mu(b^1.5 i), a = 0.866, b = 0.973
+      awk 'BEGIN { a = 0.866; b = 0.973; rad = atan2(0, -1)/180; s = sin(20.9*rad)/cos(20.9*rad); l = sin(32.76*rad)/cos(32.76*rad)
+        printf "--set time.end=40 --set material.static_angle_deg=%.4f --set material.limit_angle_deg=%.4f --set material.i0=%.4f",
+          atan2(a/b^2*s, 1)/rad, atan2(a/b^2*l, 1)/rad, 0.279/b^1.5 }' ;;
     *) echo "unknown run $1" >&2; return 1 ;;
   esac
 }
 runs=("$@")
 [ ${#runs[@]} = 0 ] && runs=(improved-1s improved-3s improved-6.5s improved-steady rows-10 rows-20 rows-40 rows-80 steady-10 steady-20 steady-40
-  literal-alpha{0,0.05}-{1,2,3,5,7,9}s)
+  literal-alpha{0,0.05}-{1,2,3,5,7,9,20,30}s responding-steady)
 for run in "${runs[@]}"; do
   grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
   # shellcheck disable=SC2046
