@@ -57,7 +57,7 @@ if [ ${#runs[@]} = 0 ]; then
   done
   runs+=(improved-cylinder-3 collisional-axisymmetric-5 collisional-axisymmetric-6)
   runs+=(tall4-axisymmetric-6 tall4c-axisymmetric-6 tall6-axisymmetric-6 tall6c-axisymmetric-6)
-  runs+=(tall4n-axisymmetric-6 tall6n-axisymmetric-6 finetall4n-axisymmetric-6 finetall6n-axisymmetric-6)
+  runs+=(tall4n-axisymmetric-6 tall6n-axisymmetric-6 finetall4n-axisymmetric-6)
 fi
 for run in "${runs[@]}"; do
   grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
