@@ -49,9 +49,9 @@ done
 run avalanche planar --set scenario.angle_deg=0 --set scenario.length=120 --set scenario.width=10 --set scenario.height=60 --set scenario.extent=20 \
   --set scenario.centre=60 --set contact.collision_time=auto --set contact.restitution=auto --set contact.stiffness=12370 --set contact.damping=12.05 --set contact.rolling=spring_slider --set contact.rolling_friction=0.05 --set time.end=25 \
   --set output.snapshot_every=0.75
-instants() { # FLOW H G OPTION...: fields of FLOW from 0.4 to 2 sqrt(H/g), every tenth of it (every snapshot)
-  local flow=$1 H=$2 g=$3 files=() k
-  shift 3
+instants() { # FLOW H G D RHO OPTION...: fields of FLOW from 0.4 to 2 sqrt(H/g), every tenth of it (every snapshot)
+  local flow=$1 H=$2 g=$3 d=$4 rho=$5 files=() k
+  shift 5
   for k in 0.4 0.5 0.6 0.7 0.8 0.9 1.0 1.1 1.2 1.3 1.4 1.5 1.6 1.7 1.8 1.9 2.0; do
     # shellcheck disable=SC2046
     "$program" cg "$scratch/$flow" -o "$scratch/fields/$flow-$k" --kernel lucy "$@" $(awk -v H="$H" -v g="$g" -v k=$k 'BEGIN {
@@ -61,5 +61,5 @@ instants() { # FLOW H G OPTION...: fields of FLOW from 0.4 to 2 sqrt(H/g), every
   awk -v flow="$flow" -v H="$H" -v g="$g" -v d="$d" -v rho="$rho" -f "$here/grains-lode.awk" "${files[@]}" | tee -a "$here/grains-lode.csv"
 }
 echo "flow,strain,inertial_number,mu,mu_rate,mu_rate_err,phi,cos3theta_stress,power_share,nodes,instants" > "$here/grains-lode.csv"
-d=0.004 rho=2500 instants 6 0.192 9.81 --grid xyz --width 0.006 --spacing 0.006
-d=1 rho=1.90986 instants planar 60 1 --grid xz --width 1 --spacing 1
+instants 6 0.192 9.81 0.004 2500 --grid xyz --width 0.006 --spacing 0.006
+instants planar 60 1 1 1.90986 --grid xz --width 1 --spacing 1
