@@ -21,6 +21,7 @@ options() {
     improved-axisymmetric-*) ;; # the case as it is
     fine-axisymmetric-*) echo "--set scenario.spacing=${half_dp[row]}" ;;
     cone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai" ;; # friction by Lode angle
+    finelade-axisymmetric-*) echo "--set material.yield_surface=lade_duncan --set scenario.spacing=${half_dp[row]}" ;;
     finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
@@ -53,7 +54,7 @@ options() {
 runs=("$@")
 if [ ${#runs[@]} = 0 ]; then
   for row in 1 2 3 4 5 6; do
-    runs+=(improved-axisymmetric-$row fine-axisymmetric-$row cone-axisymmetric-$row finecone-axisymmetric-$row improved-planar-$row literal-planar-$row stepped-planar-$row)
+    runs+=(improved-axisymmetric-$row fine-axisymmetric-$row cone-axisymmetric-$row finecone-axisymmetric-$row finelade-axisymmetric-$row improved-planar-$row literal-planar-$row stepped-planar-$row)
   done
   runs+=(improved-cylinder-3 collisional-axisymmetric-5 collisional-axisymmetric-6)
   runs+=(tall4-axisymmetric-6 tall4c-axisymmetric-6 tall6-axisymmetric-6 tall6c-axisymmetric-6)
