@@ -43,10 +43,17 @@ std::string host() {
   return name.data();
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 struct Row {
   std::string flow;
   double grains = 0, contacts = 0;                                // touching pairs per flowing grain
   double fast = 0, plain = 0, granular = 0, hooke = 0, skin = 0;  // grain-steps per CPU second; LAMMPS' best skin
+  double ratio = 0;                                               // fast/hooke, median of the rounds at that skin
   double steps_per_rebuild = 0, rebuild_part = 0;
 };
 
@@ -63,15 +70,15 @@ void count_contacts(Row& row, const DemState& s) {
   row.contacts = static_cast<double>(std::count(s.pairs.touching.begin(), s.pairs.touching.end(), 1)) / row.grains;
 }
 
-// One round of the fast engine from the start of the flow.
-void run_fast(Row& row, const DemState& start, const ContactLaws& laws, int steps) {
+// One round of the fast engine from the start of the flow; returns its speed.
+double run_fast(Row& row, const DemState& start, const ContactLaws& laws, int steps) {
   DemState s = warmed(start, laws);
   const std::int64_t rebuilds = s.rebuilds;
   const double begin = cpu(RUSAGE_SELF);
   advance(s, laws, steps);
   const double seconds = cpu(RUSAGE_SELF) - begin;
   const double speed = static_cast<double>(s.grains.flowing) * steps / seconds;
-  if (speed < row.fast) return;
+  if (speed < row.fast) return speed;
   count_contacts(row, s);
   row.fast = speed;
   const double made = static_cast<double>(s.rebuilds - rebuilds);
@@ -81,6 +88,7 @@ void run_fast(Row& row, const DemState& start, const ContactLaws& laws, int step
   s.pairs.origin.clear();
   advance(s, laws, 0);  // makes all lists
   row.rebuild_part = made * (cpu(RUSAGE_SELF) - rebuild) / seconds;
+  return speed;
 }
 
 void run_plain(Row& row, const DemState& start, const ContactLaws& laws, int steps) {
@@ -92,7 +100,8 @@ void run_plain(Row& row, const DemState& start, const ContactLaws& laws, int ste
   row.plain = static_cast<double>(s.grains.flowing) * steps / (cpu(RUSAGE_SELF) - begin);
 }
 
-// Best of rounds in turn: other load only slows.
+// Speeds are the best of rounds in turn, other load only slows; ratios are taken round by round, because the speed of a machine
+// may change in between.
 Row compare(const std::string& name, const DemState& start, const ContactLaws& laws, int steps, bool lammps) {
   Row row{.flow = name};
   run_plain(row, start, laws, steps / 10);
@@ -102,10 +111,15 @@ Row compare(const std::string& name, const DemState& start, const ContactLaws& l
     const double speed = lammps ? lammps_speed(start, Style::hooke, skin, steps) : 0;
     if (speed > row.hooke) row.hooke = speed, row.skin = skin;
   }
-  for (int round = 0; round < 3; ++round) {
-    run_fast(row, start, laws, steps);
-    if (lammps) row.hooke = std::max(row.hooke, lammps_speed(start, Style::hooke, row.skin, steps));
+  std::vector<double> ratios;
+  for (int round = 0; round < 5; ++round) {
+    const double fast = run_fast(row, start, laws, steps);
+    if (!lammps) continue;
+    const double hooke = lammps_speed(start, Style::hooke, row.skin, steps);
+    row.hooke = std::max(row.hooke, hooke);
+    ratios.push_back(fast / hooke);
   }
+  if (lammps) row.ratio = median(ratios);
   return row;
 }
 
@@ -114,9 +128,8 @@ void print(const Row& r, double hz) {
       "{:>10} {:7.0f} grains: fast {:6.1f} M grain-steps/s, plain {:5.1f}, lmp granular {:5.1f}, hooke {:5.1f} (skin "
       "{}), fast/hooke {:4.2f};\n{:19} {:.2f} contacts per grain, {:.0f} cycles per contact and step, {:.0f} steps per "
       "rebuild, rebuilds take {:.1f} %\n",
-      r.flow, r.grains, r.fast * 1e-6, r.plain * 1e-6, r.granular * 1e-6, r.hooke * 1e-6, r.skin,
-      r.hooke > 0 ? r.fast / r.hooke : 0.0, "", r.contacts, hz / r.fast / r.contacts, r.steps_per_rebuild,
-      100 * r.rebuild_part);
+      r.flow, r.grains, r.fast * 1e-6, r.plain * 1e-6, r.granular * 1e-6, r.hooke * 1e-6, r.skin, r.ratio, "",
+      r.contacts, hz / r.fast / r.contacts, r.steps_per_rebuild, 100 * r.rebuild_part);
 }
 
 // Cost per grain-step of a flow over that of another, by CPU time: the median over many short rounds in turn, because the
@@ -134,43 +147,42 @@ double relative_cost(const DemState& a, const ContactLaws& a_laws, const DemStat
     const double first = seconds(a, a_laws);
     ratios.push_back(first / seconds(b, b_laws));
   }
-  std::nth_element(ratios.begin(), ratios.begin() + rounds / 2, ratios.end());
-  return ratios[rounds / 2];
+  return median(ratios);
 }
 
-// Best wall times of several rounds in turn.
+// By wall time, medians of several rounds in turn.
 struct SpeedUp {
-  double one = 1e30, two = 1e30;  // threads
-  double separate = 1e30;         // two flows at once, each on one thread of its own: what the machine has to give
-  double threads() const { return one / two; }
-  double machine() const { return 2 * one / separate; }
+  double threads = 0;   // of two threads over one
+  double separate = 0;  // of two flows at once, each on one thread of its own: what the machine has to give
 };
 SpeedUp speed_up(const DemState& start, const ContactLaws& laws, int steps) {
-  SpeedUp best;
-  const auto timed = [&](double& shortest, auto&& work) {
+  const auto timed = [&](auto&& work) {
     const double begin = wall();
     work();
-    shortest = std::min(shortest, wall() - begin);
+    return wall() - begin;
   };
-  for (int round = 0; round < 7; ++round) {
-    for (const int threads : {1, 2}) {
-      set_threads(threads);
+  std::vector<double> threads, separate;
+  for (int round = 0; round < 9; ++round) {
+    std::array<double, 2> took{};
+    for (const int team : {1, 2}) {
+      set_threads(team);
       DemState s = warmed(start, laws);
-      timed(threads == 1 ? best.one : best.two, [&] { advance(s, laws, steps); });
+      took[static_cast<std::size_t>(team - 1)] = timed([&] { advance(s, laws, steps); });
     }
+    threads.push_back(took[0] / took[1]);
     set_threads(1);
     std::array<DemState, 2> flows{warmed(start, laws), warmed(start, laws)};
-    timed(best.separate, [&] {
-      std::array<std::thread, 2> both;
-      for (std::size_t k = 0; k < 2; ++k)
-        both[k] = std::thread([&, k] {
-          set_threads(1);
-          advance(flows[k], laws, steps);
-        });
-      for (std::thread& t : both) t.join();
-    });
+    separate.push_back(2 * took[0] / timed([&] {
+                         std::array<std::thread, 2> both;
+                         for (std::size_t k = 0; k < 2; ++k)
+                           both[k] = std::thread([&, k] {
+                             set_threads(1);
+                             advance(flows[k], laws, steps);
+                           });
+                         for (std::thread& t : both) t.join();
+                       }));
   }
-  return best;
+  return {median(threads), median(separate)};
 }
 
 // Peak memory of a process that runs the flow, in bytes. Forked before this process has grown or made threads.
@@ -245,9 +257,9 @@ int main(int argc, char** argv) {
   if (std::thread::hardware_concurrency() > 1)
     for (const std::size_t k : {0, 1}) {
       const SpeedUp s = k == 0 ? speed_up(one, linear, 3000) : speed_up(make_state(developed, 4, 2), linear, 500);
-      faster[k] = s.threads();
+      faster[k] = s.threads;
       fmt::print("two threads with {} grains: {:.2f} times as fast as one; two separate flows at once: {:.2f}\n",
-                 k == 0 ? "4 000" : "32 000", s.threads(), s.machine());
+                 k == 0 ? "4 000" : "32 000", s.threads, s.separate);
     }
 
   std::ofstream csv("performance.csv", std::ios::app);
@@ -258,7 +270,6 @@ int main(int argc, char** argv) {
   for (const Row& r : rows)
     csv << fmt::format(
         "{},{},{},{},{:.3g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.4g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.0f}\n", host(),
-        git_hash(), r.flow, r.grains, r.contacts, r.fast, r.plain, r.granular, r.hooke, r.skin,
-        r.hooke > 0 ? r.fast / r.hooke : 0.0, hz / r.fast / r.contacts, r.steps_per_rebuild, r.rebuild_part, faster[0],
-        faster[1], bytes);
+        git_hash(), r.flow, r.grains, r.contacts, r.fast, r.plain, r.granular, r.hooke, r.skin, r.ratio,
+        hz / r.fast / r.contacts, r.steps_per_rebuild, r.rebuild_part, faster[0], faster[1], bytes);
 }
