@@ -215,14 +215,20 @@ inline Register odd_pairs_of_each(Register a, Register b) {
 // The lane sums of `count` packs, four at a time, always in the same order.
 inline void lane_sums(const Pack* a, int count, double* sums) {
   using Half = double __attribute__((vector_size(32)));
-  for (int first = 0; first < count; first += 4) {
-    const auto at = [&](int k) { return first + k < count ? a[first + k].v : Register{}; };
-    const Register two = detail::evens(at(0), at(1)) + detail::odds(at(0), at(1)),
-                   more = detail::evens(at(2), at(3)) + detail::odds(at(2), at(3)),
+  const auto four_sums = [](Register a0, Register a1, Register a2, Register a3) {
+    const Register two = detail::evens(a0, a1) + detail::odds(a0, a1), more = detail::evens(a2, a3) + detail::odds(a2, a3),
                    four = detail::even_pairs(two, more) + detail::odd_pairs(two, more);
-    const Half half = __builtin_shufflevector(four, four, 0, 1, 2, 3) + __builtin_shufflevector(four, four, 4, 5, 6, 7);
-    std::memcpy(sums + first, &half, sizeof(double) * static_cast<std::size_t>(count - first < 4 ? count - first : 4));
+    return Half(__builtin_shufflevector(four, four, 0, 1, 2, 3) + __builtin_shufflevector(four, four, 4, 5, 6, 7));
+  };
+  int k = 0;
+  for (; k + 4 <= count; k += 4) {
+    const Half half = four_sums(a[k].v, a[k + 1].v, a[k + 2].v, a[k + 3].v);
+    std::memcpy(sums + k, &half, sizeof half);
   }
+  if (k == count) return;
+  const auto at = [&](int i) { return i < count ? a[i].v : Register{}; };
+  const Half rest = four_sums(at(k), at(k + 1), at(k + 2), at(k + 3));
+  for (int i = 0; k < count; ++i, ++k) sums[k] = rest[i];
 }
 template <int N>
 inline void lane_sums(const Pack (&a)[N], double* sums) {

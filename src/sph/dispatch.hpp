@@ -36,7 +36,7 @@ struct PairShape {
   }
   template <class T>
   T ratio(T r2) const {
-    return ratio(r2, rsqrt(r2));
+    return ieee_sqrt(r2) * inv_h;
   }
   template <class T>
   T f(T R) const {
