@@ -95,8 +95,12 @@ void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begi
         const Pack mf = shape.unscaled_f(other[F::mass], R);
         af = mf * other[F::inv_rho];
         sum[At::density] += mf * vr;
+        for (int d = 0; d < D; ++d) v[d] *= af;
         for (int a = 0, m = At::gradient; a < D; ++a)
-          for (int b = a; b < D; ++b, ++m) sum[m] += af * (a == b ? v[a] * r[a] : v[a] * r[b] + v[b] * r[a]);
+          for (int b = a; b < D; ++b, ++m) {
+            sum[m] += v[a] * r[b];
+            if (a != b) sum[m] += v[b] * r[a];
+          }
       } else {
         const Pack f = shape.f(R);
         af = other[F::mass] * f;

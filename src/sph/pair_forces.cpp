@@ -31,17 +31,14 @@ void write_stresses(Work& w, const Particles& p) {
 }
 
 // P_i + P_j + Pi_ij - coefficient eta_ij (v_ij . r_ij)/(r_ij^2 rho_i rho_j); times m_j f r_ij it is the acceleration of i.
-// `vr` is v_ij . r_ij/r_ij^2; a, b are the records of the two particles.
+// `vr` is v_ij . r_ij; a, b are the records of the two particles.
 template <int D, class Mean, bool viscous, bool artificial, class T>
-T strength(const T& vr, const double* a, const T* b, double coefficient, double alpha_h_c) {
+T strength(const T& r2, const T& vr, const double* a, const T* b, double coefficient, double alpha_h_c) {
   using F = PairRecord<D>;
   T s = a[F::P] + b[F::P];
-  if constexpr (viscous) {
-    T drag = Mean::of(T(a[F::eta]), b[F::eta]) * (coefficient * a[F::inv_rho]) * b[F::inv_rho];
-    if constexpr (artificial)
-      drag += alpha_h_c * 2 * a[F::inv_rho] * b[F::inv_rho] * reciprocal(T(a[F::inv_rho] + b[F::inv_rho]));
-    s -= drag * vr;
-  }
+  if constexpr (viscous) s -= (coefficient * a[F::inv_rho]) * b[F::inv_rho] * vr * Mean::over(r2, T(a[F::eta]), b[F::eta]);
+  if constexpr (artificial)
+    s -= alpha_h_c * 2 * a[F::inv_rho] * b[F::inv_rho] * vr / (r2 * (a[F::inv_rho] + b[F::inv_rho]));
   return s;
 }
 
@@ -63,9 +60,8 @@ void sum_rates(Work& w, const PairShape<D, Kernel> shape, double coefficient, do
         r2 += r[d] * r[d];
         vr += (self[F::v + d] - other[F::v + d]) * r[d];
       }
-      const Pack inv_r = rsqrt(r2), mf = shape.unscaled_f(other[F::mass], shape.ratio(r2, inv_r));
-      const Pack s =
-          mf * strength<D, Mean, viscous, artificial>(Pack(vr * (inv_r * inv_r)), self, other, coefficient, alpha_h_c);
+      const Pack mf = shape.unscaled_f(other[F::mass], shape.ratio(r2)),
+                 s = mf * strength<D, Mean, viscous, artificial>(r2, vr, self, other, coefficient, alpha_h_c);
       for (int d = 0; d < D; ++d) sum[d] += s * r[d];
     });
     std::copy_n(sum, D, all + (i - begin) * D);
@@ -94,7 +90,7 @@ void rate_sweep(Work& w, const Particles& p, const Model& model) {
           double r2 = shape.tiny, vr = 0;
           for (std::size_t d = 0; d < D; ++d) r2 += r[d] * r[d], vr += beta * v[d] * r[d];
           const double mf = self[F::mass] * shape.f(shape.ratio(r2));
-          const double s = mf * strength<D, Mean, viscous, artificial>(vr / r2, self, self, coefficient, alpha_h_c);
+          const double s = mf * strength<D, Mean, viscous, artificial>(r2, vr, self, self, coefficient, alpha_h_c);
           for (std::size_t d = 0; d < D; ++d) a[d] += s * r[d];
         });
       for (std::size_t d = 0; d < D; ++d) w.acceleration[d][i] = model.gravity[d] + a[d];

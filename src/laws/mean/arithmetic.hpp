@@ -16,6 +16,11 @@ struct Arithmetic {
   static T of(T a, T b) {
     return 0.5 * (a + b);
   }
+  // The mean over a divisor, in one division.
+  template <class T>
+  static T over(T divisor, T a, T b) {
+    return 0.5 * (a + b) / divisor;
+  }
 };
 
 }  // namespace bagnold::laws::mean

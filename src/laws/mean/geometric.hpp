@@ -17,6 +17,11 @@ struct Geometric {
   static T of(T a, T b) {
     return sqrt(T(a * b));
   }
+  // The mean over a divisor, in one division.
+  template <class T>
+  static T over(T divisor, T a, T b) {
+    return sqrt(T(a * b)) / divisor;
+  }
 };
 
 }  // namespace bagnold::laws::mean

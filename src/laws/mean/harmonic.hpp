@@ -16,6 +16,11 @@ struct Harmonic {
   static T of(T a, T b) {
     return 2 * a * b * reciprocal(max(T(a + b), T(1e-300)));
   }
+  // The mean over a divisor, in one division.
+  template <class T>
+  static T over(T divisor, T a, T b) {
+    return 2 * a * b / max(T((a + b) * divisor), T(1e-300));
+  }
 };
 
 }  // namespace bagnold::laws::mean
