@@ -216,7 +216,8 @@ inline Register odd_pairs_of_each(Register a, Register b) {
 inline void lane_sums(const Pack* a, int count, double* sums) {
   using Half = double __attribute__((vector_size(32)));
   const auto four_sums = [](Register a0, Register a1, Register a2, Register a3) {
-    const Register two = detail::evens(a0, a1) + detail::odds(a0, a1), more = detail::evens(a2, a3) + detail::odds(a2, a3),
+    const Register two = detail::evens(a0, a1) + detail::odds(a0, a1),
+                   more = detail::evens(a2, a3) + detail::odds(a2, a3),
                    four = detail::even_pairs(two, more) + detail::odd_pairs(two, more);
     return Half(__builtin_shufflevector(four, four, 0, 1, 2, 3) + __builtin_shufflevector(four, four, 4, 5, 6, 7));
   };

@@ -26,11 +26,13 @@ constexpr int list_steps = 50;            // a neighbour list should last, expli
 constexpr double closest_to_wall = 0.02;  // over dp
 
 // a += factor b, all directions.
+void add(std::vector<double>& a, const std::vector<double>& b, double factor) {
+  double* to = a.data();
+  const double* from = b.data();
+  parallel_for(static_cast<std::int64_t>(a.size()), [=](std::int64_t i) { to[i] += factor * from[i]; });
+}
 void add(Field& a, const Field& b, double factor, const Model& model) {
-  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)
-    parallel_for(static_cast<std::int64_t>(a[d].size()), [&](std::int64_t i) {
-      a[d][static_cast<std::size_t>(i)] += factor * b[d][static_cast<std::size_t>(i)];
-    });
+  for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) add(a[d], b[d], factor);
 }
 
 // D rho/Dt over a step, exact for a constant rate of strain: a loose particle may dilute many times over in one step, and a
@@ -116,14 +118,15 @@ void midpoint_step(State& state, Work& w, const Model& model, double travel) {
   const auto dim = static_cast<std::size_t>(model.dim);
   if (outdated(w.pairs, p, model.dim, half)) rebuild(w.pairs, p, model, travel);
   kinematics(w, p, model, Kinematics::density);
-  parallel_for(p.size(), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    for (std::size_t d = 0; d < dim; ++d) {
-      p.x[d][i] += half * p.v[d][i];
-      p.v[d][i] += half * p.rate[d][i];
-    }
-    p.rho[i] += half * w.density_rate[i];
-  });
+  for (std::size_t d = 0; d < dim; ++d) {
+    double *x = p.x[d].data(), *v = p.v[d].data();
+    const double* rate = p.rate[d].data();
+    parallel_for(p.size(), [=](std::int64_t i) {
+      x[i] += half * v[i];
+      v[i] += half * rate[i];
+    });
+  }
+  add(p.rho, w.density_rate, half);
   std::vector<double>& first_density_rate = w.force[0];  // scratch of the other schemes
   std::swap(first_density_rate, w.density_rate);
   kinematics(w, p, model, Kinematics::pairs);
@@ -131,14 +134,17 @@ void midpoint_step(State& state, Work& w, const Model& model, double travel) {
   pair_momentum_rate(w, p, model, true);
   ++w.applications;
   if (state.keep_ledger) separate_forces(w, p, model);
-  parallel_for(p.size(), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    for (std::size_t d = 0; d < dim; ++d) {
-      p.v[d][i] += dt * w.acceleration[d][i] - half * p.rate[d][i];
-      p.x[d][i] += half * p.v[d][i];
-    }
-    p.rho[i] += dt * w.density_rate[i] - half * first_density_rate[i];
-  });
+  for (std::size_t d = 0; d < dim; ++d) {
+    double *x = p.x[d].data(), *v = p.v[d].data();
+    const double *rate = w.acceleration[d].data(), *last = p.rate[d].data();
+    parallel_for(p.size(), [=](std::int64_t i) {
+      v[i] += dt * rate[i] - half * last[i];
+      x[i] += half * v[i];
+    });
+  }
+  double* rho = p.rho.data();
+  const double *rate = w.density_rate.data(), *first = first_density_rate.data();
+  parallel_for(p.size(), [=](std::int64_t i) { rho[i] += dt * rate[i] - half * first[i]; });
   std::swap(p.rate, w.acceleration);
   if (state.keep_ledger) enter_printed_step(state, w, model);
 }

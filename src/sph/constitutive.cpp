@@ -39,9 +39,9 @@ void eight(const L& law, const Pack& rho, const Pack& gamma, const Pack& lode, P
   viscosity = law.regularisation.viscosity(Pack(law.static_friction * pressure), eta0, gamma);
   if constexpr (!decltype(law.shape)::circular)
     for (int k = 0; k < Pack::lanes; ++k) viscosity.set(k, viscosity[k] * law.shape(lode[k]));
-  // dp/dgamma = 2 p/gamma sensitivity, finite at rest
-  const Pack dp = 2 * pressure * laws::eos::sensitivity(cubic, safe) / max(gamma, Pack(1e-12));
-  bulk = law.bulk * viscosity + law.dilatant * dp;
+  bulk = law.bulk * viscosity;
+  if (law.dilatant > 0)  // dp/dgamma = 2 p/gamma sensitivity, finite at rest
+    bulk += law.dilatant * (2 * pressure * laws::eos::sensitivity(cubic, safe) / max(gamma, Pack(1e-12)));
 }
 
 template <class L>

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "sph/forces.hpp"
+#include "sph/kinematics.hpp"
 #include "sph/observe.hpp"
 
 namespace bagnold::sph {
@@ -100,6 +101,7 @@ void enter_displacements(State& state, const Model& model) {
 }
 
 void separate_forces(Work& w, const Particles& p, const Model& model) {
+  update_volumes(w, p);
   const Field total = w.acceleration;
   pair_momentum_rate(w, p, model, false);
   w.cg_q = w.acceleration;

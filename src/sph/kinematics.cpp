@@ -236,11 +236,13 @@ void update_volumes(Work& w, const Particles& p) {
 }
 
 void kinematics(Work& w, const Particles& p, const Model& model, Kinematics what, bool moments) {
-  update_volumes(w, p);
-  parallel_for(p.size(), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    w.area[i] = model.axisymmetric ? w.volume[i] * inverse_radius(model, p.x[0][i]) / (2 * M_PI) : w.volume[i];
-  });
+  if (what == Kinematics::corrected || moments) {
+    update_volumes(w, p);
+    parallel_for(p.size(), [&](std::int64_t k) {
+      const auto i = static_cast<std::size_t>(k);
+      w.area[i] = model.axisymmetric ? w.volume[i] * inverse_radius(model, p.x[0][i]) / (2 * M_PI) : w.volume[i];
+    });
+  }
   if (model.lode_angles()) w.lode.resize(w.shear_rate.size());
   if (what == Kinematics::corrected) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d)

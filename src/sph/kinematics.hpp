@@ -13,7 +13,7 @@ enum class Kinematics {
   pairs,      // density_rate and gradient as printed: eqs 26, 31
   corrected,  // M, B, L = S B, density_rate = -rho tr L; keeps the pairs' geometry
 };
-// Fills volume, area, density_rate, shear_rate; `corrected` (and `pairs` with `moments`) also coverage, concentration,
+// Fills density_rate, shear_rate; `corrected` (and `pairs` with `moments`) also volume, area, coverage, concentration,
 // imbalance.
 void kinematics(Work& work, const Particles& particles, const Model& model, Kinematics what, bool moments = false);
 

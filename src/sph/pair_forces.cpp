@@ -36,7 +36,8 @@ template <int D, class Mean, bool viscous, bool artificial, class T>
 T strength(const T& r2, const T& vr, const double* a, const T* b, double coefficient, double alpha_h_c) {
   using F = PairRecord<D>;
   T s = a[F::P] + b[F::P];
-  if constexpr (viscous) s -= (coefficient * a[F::inv_rho]) * b[F::inv_rho] * vr * Mean::over(r2, T(a[F::eta]), b[F::eta]);
+  if constexpr (viscous)
+    s -= (coefficient * a[F::inv_rho]) * b[F::inv_rho] * vr * Mean::over(r2, T(a[F::eta]), b[F::eta]);
   if constexpr (artificial)
     s -= alpha_h_c * 2 * a[F::inv_rho] * b[F::inv_rho] * vr / (r2 * (a[F::inv_rho] + b[F::inv_rho]));
   return s;

@@ -112,19 +112,21 @@ void append_neighbours(const Sorted& s, std::size_t i, double cutoff, std::uint3
 bool outdated(const Pairs& pairs, const Particles& p, int dim, double lead) {
   if (pairs.offset.empty()) return true;
   const double limit = 0.25 * p.skin * p.skin;
-  constexpr std::int64_t block = 4096;
+  constexpr std::int64_t block = 1024;
   std::vector<std::uint8_t> moved(static_cast<std::size_t>((p.size() + block - 1) / block));
   parallel_blocks(p.size(), block, [&](std::int64_t begin, std::int64_t end) {
-    double most = 0;
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      double r2 = 0;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(dim); ++k) {
-        const double d = std::abs(p.x[k][i] - p.x_built[k][i]) + lead * std::abs(p.v[k][i]);
-        r2 += d * d;
+    std::array<double, block> r2{};
+    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dim); ++k) {
+      const double *x = p.x[k].data() + first, *built = p.x_built[k].data() + first, *v = p.v[k].data() + first;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double d = std::abs(x[i] - built[i]) + lead * std::abs(v[i]);
+        r2[i] += d * d;
       }
-      most = std::max(most, r2);
     }
-    moved[static_cast<std::size_t>(begin / block)] = !(most <= limit);
+    std::int64_t far = 0;
+    for (std::size_t i = 0; i < count; ++i) far += !(r2[i] <= limit);  // also for NaN
+    moved[static_cast<std::size_t>(begin / block)] = far > 0;
   });
   return std::find(moved.begin(), moved.end(), 1) != moved.end();
 }
