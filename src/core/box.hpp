@@ -26,6 +26,7 @@ inline Vec3 minimum_image(const Box& box, Vec3 d) {
 inline Vec3 wrap(const Box& box, Vec3 r) {
   for (int k = 0; k < 3; ++k) {
     if (!box.periodic[static_cast<std::size_t>(k)]) continue;
+    if (r[k] >= box.origin[k] && r[k] < box.origin[k] + box.length[k]) continue;
     r[k] -= box.length[k] * std::floor((r[k] - box.origin[k]) / box.length[k]);
     if (r[k] >= box.origin[k] + box.length[k]) r[k] = box.origin[k];  // floor of a tiny negative rounds up
   }

@@ -38,14 +38,16 @@ struct CellGrid {
 // Throws UnphysicalError when a periodic length is below `cutoff`.
 void sort_into_cells(CellGrid& grid, const Box& box, std::span<const Vec3> x, double cutoff);
 
-// f(p, begin, end, image) for every place p in `order` of a point of `slab`: its near points are among those at the
-// places [begin, end), as that image. Each pair of near points is met once; several calls per p.
+// Places [begin, end) in `order` of points that are met as that image.
+struct NearRange {
+  std::int32_t begin, end;
+  Image image;
+};
+
+// f(first, last, near) for every cell of `slab` that holds points, at the places [first, last): their near points are the others
+// of the cell and those in `near`, and in this way each pair of near points is met once.
 template <class F>
-void for_each_range(const CellGrid& grid, int slab, F&& f) {
-  struct Range {
-    std::int32_t begin, end;
-    Image image;
-  };
+void for_each_cell(const CellGrid& grid, int slab, F&& f) {
   const auto [n0, n1, n2] = grid.count;
   const auto begin_of = [&](int c0, int c1, int c2) {
     return grid.cell_begin[static_cast<std::size_t>((c0 * n1 + c1) * n2 + c2)];
@@ -56,7 +58,7 @@ void for_each_range(const CellGrid& grid, int slab, F&& f) {
     c -= image * n;
     return image == 0 || grid.periodic[static_cast<std::size_t>(k)];
   };
-  std::array<Range, 15> near;
+  std::array<NearRange, 15> near;
   for (int c0 = grid.layer_begin(slab); c0 < grid.layer_begin(slab + 1); ++c0)
     for (int c1 = 0; c1 < n1; ++c1)
       for (int c2 = 0; c2 < n2; ++c2) {
@@ -73,31 +75,31 @@ void for_each_range(const CellGrid& grid, int slab, F&& f) {
           if (!step(0, n0, a, along0) || !step(1, n1, b, along1)) return;
           const auto add = [&](int lo, int hi, int steps) {
             along2 = steps;
-            if (lo <= hi)
-              near[ranges++] = {begin_of(a, b, lo), begin_of(a, b, hi + 1), image_code(image[0], image[1], image[2])};
+            if (lo > hi) return;
+            const NearRange range{begin_of(a, b, lo), begin_of(a, b, hi + 1), image_code(image[0], image[1], image[2])};
+            if (range.begin < range.end) near[ranges++] = range;
           };
           if (grid.periodic[2] && c2 + from < 0) add(n2 - 1, n2 - 1, -1);
           add(std::max(c2 + from, 0), std::min(c2 + 1, n2 - 1), 0);
           if (grid.periodic[2] && c2 + 1 >= n2) add(0, 0, 1);
         };
         add_row(0, 0, 1);
-        const bool joined = ranges > 0 && near[0].begin == last && near[0].image == same_image;
         add_row(0, 1, -1);
         for (int o1 = -1; o1 <= 1; ++o1) add_row(1, o1, -1);
-        for (std::int32_t p = first; p < last; ++p) {
-          f(p, p + 1, joined ? near[0].end : last, same_image);
-          for (std::size_t k = joined ? 1 : 0; k < ranges; ++k)
-            if (near[k].begin < near[k].end) f(p, near[k].begin, near[k].end, near[k].image);
-        }
+        f(first, last, std::span<const NearRange>(near.data(), ranges));
       }
 }
 
 // f(i, j, image) for pairs whose first point lies in `slab`: every pair closer than the cutoff, and some others.
 template <class F>
 void for_each_pair(const CellGrid& grid, int slab, F&& f) {
-  for_each_range(grid, slab, [&](std::int32_t p, std::int32_t begin, std::int32_t end, Image image) {
-    const std::int32_t i = grid.order[static_cast<std::size_t>(p)];
-    for (std::int32_t q = begin; q < end; ++q) f(i, grid.order[static_cast<std::size_t>(q)], image);
+  for_each_cell(grid, slab, [&](std::int32_t first, std::int32_t last, std::span<const NearRange> near) {
+    for (std::int32_t p = first; p < last; ++p) {
+      const std::int32_t i = grid.order[static_cast<std::size_t>(p)];
+      for (std::int32_t q = p + 1; q < last; ++q) f(i, grid.order[static_cast<std::size_t>(q)], same_image);
+      for (const NearRange& r : near)
+        for (std::int32_t q = r.begin; q < r.end; ++q) f(i, grid.order[static_cast<std::size_t>(q)], r.image);
+    }
   });
 }
 

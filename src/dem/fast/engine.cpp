@@ -230,12 +230,6 @@ void check(Engine& engine, DemState& state) {
   }
 }
 
-void rebuild(Engine& engine, DemState& state) {
-  unload(engine, state);
-  ++state.rebuilds;
-  load(engine, state, ContactLaws(engine.laws));
-}
-
 void take_steps(Engine& engine, DemState& state, std::int64_t steps, const Watch& watch) {
   engine.scratch.resize(std::max(engine.scratch.size(), static_cast<std::size_t>(threads())));
   for (const std::int64_t end = engine.step + steps; engine.step < end;) {

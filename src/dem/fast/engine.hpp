@@ -51,6 +51,7 @@ struct Engine {
   Box box;
   Vec3 gravity;
   double dt = 0, overlap_ratio = 0, skin = 0;
+  double cutoff = 0;  // distance of the centres of two large grains at which a pair is listed
   std::int64_t step = 0;
   bool equal_radii = true, one_kind = true;
   bool alike = true;  // the flowing grains: of one size, mass and moment of inertia
@@ -88,8 +89,20 @@ void leave(Engine& engine, DemState& state);
 // Takes the state and makes all lists, those that the state remembers if another engine made them before.
 void load(Engine& engine, DemState& state, const ContactLaws& laws);
 
-// Gives the state back but for the origin of the lists: the next load() starts new ones.
-void unload(Engine& engine, DemState& state);
+// Its parts: rows, slabs and the outer list from the places where grains start (`start`, by grain);
+void arrange(Engine& engine, const Grains& grains, const std::vector<Vec3>& start);
+// the largest acceleration of every slab, and the frame in which grains move least from here on;
+void measure(Engine& engine);
+// the other lists, with the springs of the pairs that touch;
+void list_inner(Engine& engine, const PairList& touching);
+// whether all this holds for the steps of one pass at least (else NumericalError).
+void start_path(Engine& engine, const DemState& state);
+
+// New lists here and now, grains in the order of space again.
+void rebuild(Engine& engine, DemState& state);
+
+// The pairs that touch with their springs, in the order of the sections.
+PairList touching_pairs(const Engine& engine);
 
 // As dem::prepare: the forces at t = 0.
 void prepare(DemState& state, const ContactLaws& laws);

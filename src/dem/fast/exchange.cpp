@@ -44,60 +44,11 @@ void release(std::vector<T>& values) {
   std::vector<T>().swap(values);
 }
 
-// Starts the outer list here and now.
-void start_lists(Engine& engine, DemState& state) {
-  Grains& g = state.grains;
-  check_motion(state);
-  wrap_positions(state);
-  engine.built_at = state.step;
-  Vec3 lo, hi;  // fixed grains are at rest
-  if (g.flowing == g.size()) lo = hi = g.v[0];
-  for (std::size_t i = 0; i < at(g.flowing); ++i)
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], g.v[i][k]);
-      hi[k] = std::max(hi[k], g.v[i][k]);
-    }
-  engine.frame = 0.5 * (lo + hi);
-}
-
 // Where grains were when the lists that the state remembers were made.
-std::vector<Vec3> remembered_start(Engine& engine, const DemState& state) {
-  engine.built_at = static_cast<std::int64_t>(state.pairs.origin[0]);
-  engine.frame = {state.pairs.origin[1], state.pairs.origin[2], state.pairs.origin[3]};
+std::vector<Vec3> remembered_start(const DemState& state) {
   std::vector<Vec3> start = state.grains.x;
   std::copy(state.pairs.reference.begin(), state.pairs.reference.end(), start.begin());
   return start;
-}
-
-void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& grid, const std::vector<Vec3>& start) {
-  const std::size_t rows = start.size() + 2 * static_cast<std::size_t>(grid.slabs);
-  engine.grain.assign(rows, -1);
-  engine.species.assign(engine.one_kind ? 0 : rows, 0);
-  engine.row.resize(start.size());
-  engine.start.assign(rows, Vec3{});
-  engine.slabs.assign(static_cast<std::size_t>(grid.slabs), {});
-  const std::size_t cells = static_cast<std::size_t>(grid.count[1]) * static_cast<std::size_t>(grid.count[2]);
-  parallel_for(
-      grid.slabs,
-      [&](std::int64_t n) {
-        const std::size_t s = at(n), first = at(grid.cell_begin[s * cells]),
-                          last = at(grid.cell_begin[(s + 1) * cells]);
-        Slab& slab = engine.slabs[s];
-        std::size_t row = slab.begin = first + 2 * s;
-        for (const bool flowing : {true, false}) {
-          for (std::size_t q = first; q < last; ++q) {
-            const auto i = at(grid.order[q]);
-            if ((static_cast<std::int64_t>(i) < g.flowing) != flowing) continue;
-            engine.grain[row] = static_cast<std::int32_t>(i);
-            if (!engine.one_kind) engine.species[row] = g.species[i];
-            engine.start[row] = start[i];
-            engine.row[i] = static_cast<std::uint32_t>(row++);
-          }
-          if (flowing) slab.moving_end = row;
-        }
-        slab.end = row;
-      },
-      rows >= 500);
 }
 
 // The rows of the grains from the arrays of the state, which are given up one after the other: large flows are in
@@ -136,71 +87,6 @@ void take_grains(Engine& engine, Grains& g) {
     rows.position[position_doubles * (slab.end + 1)] = 0.3 * g.diameter[0];
 }
 
-// A pair of an inner list that touches, or whose spring says so: the kernel may have rounded a grazing contact the other way.
-struct Touching {
-  std::int32_t i, j;  // grains, i < j
-  std::array<int, 3> image;
-  Vec3 spring, roll;
-};
-template <class F>
-void for_touching(const Engine& engine, const Section& section, F&& f) {
-  for (std::size_t k = 0; k < section.inner.count; ++k) {
-    const auto a = row_of(section.inner.i[k]), b = row_of(section.inner.j[k]);
-    const double *xa = &engine.rows.position[position_doubles * a], *xb = &engine.rows.position[position_doubles * b];
-    Vec3 r{xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2]};
-    Touching t{engine.grain[a], engine.grain[b], {}, {}, {}};
-    for (int d = 0; d < 3; ++d) {
-      t.image[at(d)] = static_cast<int>(std::nearbyint(engine.images.inverse[d] * r[d]));
-      r[d] -= engine.images.length[d] * t.image[at(d)];
-    }
-    const double* h = &section.history[k / 8 * 8 * engine.history_numbers + k % 8];
-    t.spring = {h[0], h[8], h[16]};
-    if (engine.history_numbers > 3) t.roll = {h[24], h[32], h[40]};
-    const double reach = xa[3] + xb[3];
-    if (norm2(r) >= reach * reach && t.spring == Vec3{} && t.roll == Vec3{}) continue;
-    if (t.i > t.j) {
-      std::swap(t.i, t.j);
-      for (int& n : t.image) n = -n;
-      t.spring = -t.spring;
-      t.roll = -t.roll;
-    }
-    f(t);
-  }
-}
-
-// The touching pairs with their springs, in the order of the sections: counted first, then each section writes its own.
-void give_pairs(const Engine& engine, PairList& pairs) {
-  const auto sections = static_cast<std::int64_t>(engine.sections.size());
-  const bool threads = engine.grain.size() >= 500;
-  std::vector<std::size_t> begin(engine.sections.size() + 1, 0);
-  parallel_for(
-      sections,
-      [&](std::int64_t s) {
-        for_touching(engine, engine.sections[at(s)], [&](const Touching&) { ++begin[at(s) + 1]; });
-      },
-      threads);
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  pairs = {};
-  for (auto* numbers : {&pairs.i, &pairs.j}) numbers->resize(begin.back());
-  for (auto* vectors : {&pairs.spring, &pairs.roll}) vectors->resize(begin.back());
-  pairs.image.resize(begin.back());
-  parallel_for(
-      sections,
-      [&](std::int64_t s) {
-        std::size_t p = begin[at(s)];
-        for_touching(engine, engine.sections[at(s)], [&](const Touching& t) {
-          pairs.i[p] = t.i;
-          pairs.j[p] = t.j;
-          pairs.image[p] = neighbours::image_code(t.image[0], t.image[1], t.image[2]);
-          pairs.spring[p] = t.spring;
-          pairs.roll[p++] = t.roll;
-        });
-      },
-      threads);
-  pairs.touching.assign(pairs.i.size(), 1);
-  pairs.slab_begin = {0, static_cast<std::int64_t>(pairs.i.size())};
-}
-
 // The way back, again one array after the other; `pairs` are found from the positions.
 void give_all(Engine& engine, DemState& state) {
   Grains& g = state.grains;
@@ -221,7 +107,7 @@ void give_all(Engine& engine, DemState& state) {
   fill(g.v, rows.velocity, velocity_doubles, 0, g.size());
   fill(g.omega, rows.velocity, velocity_doubles, 4, g.size());
   Aligned<double>().swap(rows.velocity);
-  give_pairs(engine, state.pairs);
+  state.pairs = touching_pairs(engine);
   fill(g.x, rows.position, position_doubles, 0, g.size());
   Aligned<double>().swap(rows.position);
 }
@@ -239,6 +125,8 @@ void give_origin(const Engine& engine, DemState& state) {
 }
 
 void remember_origin(Engine& engine, const PairList& pairs) {
+  engine.built_at = static_cast<std::int64_t>(pairs.origin[0]);
+  engine.frame = {pairs.origin[1], pairs.origin[2], pairs.origin[3]};
   for (std::size_t s = 0; s < engine.slabs.size(); ++s) {
     const double* known = &pairs.origin[4 + 5 * s];
     engine.slabs[s].excursion = known[0];
@@ -246,19 +134,6 @@ void remember_origin(Engine& engine, const PairList& pairs) {
     engine.slabs[s].acceleration = known[3];
     engine.slabs[s].steps_left = static_cast<std::int64_t>(known[4]);
   }
-}
-
-void measure_accelerations(Engine& engine) {
-  parallel_for(
-      static_cast<std::int64_t>(engine.slabs.size()),
-      [&](std::int64_t s) {
-        Slab& slab = engine.slabs[at(s)];
-        for (std::size_t k = slab.begin; k < slab.moving_end; ++k) {
-          const double* f = &engine.rows.force[force_doubles * k];
-          slab.acceleration = std::max(slab.acceleration, norm(f[3] * Vec3{f[0], f[1], f[2]} + engine.gravity));
-        }
-      },
-      engine.grain.size() >= 500);
 }
 
 // A number that tells the grains of one moment from those of any other.
@@ -278,42 +153,6 @@ std::uint64_t fingerprint(const Grains& g) {
   std::uint64_t all = static_cast<std::uint64_t>(g.flowing);
   for (const std::uint64_t lane : lanes) all = std::rotl(all ^ lane, 29) * 0x9e3779b97f4a7c15;
   return all;
-}
-
-// First inner lists, and the springs of the pairs that touch.
-void list_inner(Engine& engine, const PairList& remembered) {
-  std::vector<std::uint32_t> begin(engine.grain.size() + 1, 0);
-  const auto rows_of = [&](std::size_t p) {
-    const std::size_t a = engine.row[at(remembered.i[p])], b = engine.row[at(remembered.j[p])];
-    return std::pair{std::min(a, b), std::max(a, b)};
-  };
-  for (std::size_t p = 0; p < remembered.i.size(); ++p)
-    if (remembered.touching[p]) ++begin[rows_of(p).first + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<std::uint32_t> contact(begin.back()), next(begin.begin(), begin.end() - 1);
-  for (std::size_t p = 0; p < remembered.i.size(); ++p)
-    if (remembered.touching[p]) contact[next[rows_of(p).first]++] = static_cast<std::uint32_t>(p);
-
-  parallel_for(static_cast<std::int64_t>(engine.sections.size()), [&](std::int64_t s) {
-    Section& section = engine.sections[at(s)];
-    section.inner.count = 0;
-    section.history.assign(8 * engine.history_numbers, 0);
-    section.mid_valid = section.inner_valid = {};
-    refresh(engine, at(s), engine.scratch[at(omp_get_thread_num())]);
-    for (std::size_t k = 0; k < section.inner.count; ++k) {
-      const std::size_t i = row_of(section.inner.i[k]), j = row_of(section.inner.j[k]);
-      for (std::uint32_t c = begin[std::min(i, j)]; c < begin[std::min(i, j) + 1]; ++c) {
-        const std::size_t p = contact[c];
-        if (rows_of(p).second != std::max(i, j)) continue;
-        const double sign = engine.row[at(remembered.i[p])] == i ? 1 : -1;
-        double* h = &section.history[k / 8 * 8 * engine.history_numbers + k % 8];
-        for (int d = 0; d < 3; ++d) {
-          h[8 * d] = sign * remembered.spring[p][d];
-          if (engine.history_numbers > 3) h[24 + 8 * d] = sign * remembered.roll[p][d];
-        }
-      }
-    }
-  });
 }
 
 }  // namespace
@@ -353,6 +192,7 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   engine.dt = state.dt;
   engine.overlap_ratio = state.max_overlap_ratio;
   engine.skin = skin_of(g);
+  engine.cutoff = largest_diameter(g) + engine.skin;
   engine.step = state.step;
   engine.images = {};
   for (int k = 0; k < 3; ++k)
@@ -363,42 +203,24 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   choose_kernel(engine, g);
 
   const bool anew = state.pairs.origin.empty();
-  {
-    std::vector<Vec3> remembered;
-    if (anew)
-      start_lists(engine, state);
-    else
-      remembered = remembered_start(engine, state);
-    const std::vector<Vec3>& start = anew ? g.x : remembered;
-    neighbours::CellGrid grid;
-    neighbours::sort_into_cells(grid, engine.box, start, largest_diameter(g) + engine.skin);
-    grid.slabs = grid.count[0];
-    place_rows(engine, g, grid, start);
-    std::vector<std::size_t> sizes;
-    for (const Slab& slab : engine.slabs) sizes.push_back(slab.end - slab.begin);
-    engine.ring = make_ring(sizes, steps_per_pass);
-    list_outer(engine, g, grid, start);
+  if (anew) {
+    check_motion(state);
+    wrap_positions(state);
   }
+  arrange(engine, g, anew ? g.x : remembered_start(state));
   take_grains(engine, g);
-  measure_accelerations(engine);
+  measure(engine);
   engine.scratch.resize(std::max(engine.scratch.size(), at(threads())));
   list_inner(engine, state.pairs);
   if (!anew) remember_origin(engine, state.pairs);
   state.pairs = {};
-  if (anew && !audit(engine))
-    throw NumericalError(fmt::format("step {} (t = {:g}): grains move too far per step; the step is too long",
-                                     state.step, state.time()));
+  if (anew) start_path(engine, state);
 }
 
 void enter(Engine& engine, DemState& state, const ContactLaws& laws) {
   if (!continues(engine, state, laws)) return load(engine, state, laws);
   state.pairs = {};
   take_grains(engine, state.grains);
-}
-
-void unload(Engine& engine, DemState& state) {
-  give_all(engine, state);
-  engine.sections.clear();
 }
 
 void leave(Engine& engine, DemState& state) {
