@@ -76,6 +76,19 @@ TEST(YieldSurface, MatsuokaNakaiHasOneTriaxialFrictionAngle) {
   }
 }
 
+// A cone of measured strength: that strength in triaxial compression, a circle without any, and between the two the cones
+// above where theirs is the same.
+TEST(YieldSurface, TriaxialRatioIsWhatItSays) {
+  using laws::yield_surface::TriaxialRatio;
+  for (const double ratio : {1.0, 1.05, 1.13, 1.4, 1.7})
+    EXPECT_NEAR(TriaxialRatio{ratio}.shape(0.5)(1.0), ratio, 1e-12);
+  for (double theta = 0; theta < M_PI; theta += 0.1) {
+    EXPECT_NEAR(TriaxialRatio{1}.shape(0.5)(std::cos(3 * theta)), 1, 1e-14);
+    const auto lade = LadeDuncan::shape(0.589);
+    EXPECT_NEAR(TriaxialRatio{lade(1)}.shape(0.589)(std::cos(3 * theta)), lade(std::cos(3 * theta)), 1e-12);
+  }
+}
+
 // A homogeneous motion v = rate (-x/2, [-y/2,] z) of a block, or of rings, and the friction it meets.
 struct Triaxial {
   Case c;

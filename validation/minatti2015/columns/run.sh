@@ -22,6 +22,7 @@ options() {
     fine-axisymmetric-*) echo "--set scenario.spacing=${half_dp[row]}" ;;
     cone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai" ;; # friction by Lode angle
     finelade-axisymmetric-*) echo "--set material.yield_surface=lade_duncan --set scenario.spacing=${half_dp[row]}" ;;
+    finetriaxial-axisymmetric-*) echo "--set material.yield_surface=triaxial_ratio --set scenario.spacing=${half_dp[row]}" ;; # strength that grains show
     finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
