@@ -113,10 +113,11 @@ void measure(Engine& engine) {
   struct Extremes {
     Vec3 lo, hi;
   };
-  const bool all_flow = std::all_of(engine.slabs.begin(), engine.slabs.end(),
-                                    [](const Slab& s) { return s.moving_end == s.end; });
+  const bool all_flow =
+      std::all_of(engine.slabs.begin(), engine.slabs.end(), [](const Slab& s) { return s.moving_end == s.end; });
   constexpr double far = std::numeric_limits<double>::infinity();
-  const Extremes none = all_flow ? Extremes{{far, far, far}, {-far, -far, -far}} : Extremes{};  // fixed grains are at rest
+  const Extremes none =
+      all_flow ? Extremes{{far, far, far}, {-far, -far, -far}} : Extremes{};  // fixed grains are at rest
   std::vector<Extremes> velocity(engine.slabs.size(), none);
   parallel_for(
       static_cast<std::int64_t>(engine.slabs.size()),
