@@ -15,8 +15,16 @@ end=(- 0.3 0.5 0.55 0.75 0.95 1.0) # s, 5.6 sqrt(H0/g) at least
 
 # NAME is FORMULATION-GEOMETRY-ROW.
 options() {
-  local row=${1##*-}
-  echo "--set time.end=${end[row]} --set output.series_every=0.01 --set output.snapshot_every=0.025 --set output.vtk_every=10"
+  local row=${1##*-} a=
+  case $1 in # row 4 or 6 made lower or higher: tall4 has a = 4; tall4c with the collisional branch, tall4n with friction by Lode angle
+    *tall[0-9]*)
+      a=${1%%-*}
+      a=${a##*tall}
+      awk -v a="${a%[cn]}" 'BEGIN { H = 0.0972*a
+        printf "--set scenario.height=%g --set material.compressibility=%g --set material.tau0=%g --set time.end=%.3f ", H, 6.53e-7/H, 9120*H, 5.6*sqrt(H/9.81) }' ;;
+    *) echo "--set time.end=${end[row]}" ;;
+  esac
+  echo "--set output.series_every=0.01 --set output.snapshot_every=0.025 --set output.vtk_every=10"
   case $1 in
     improved-axisymmetric-*) ;; # the case as it is
     fine-axisymmetric-*) echo "--set scenario.spacing=${half_dp[row]}" ;;
@@ -26,15 +34,10 @@ options() {
     finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
+    cone-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009 --set material.yield_surface=matsuoka_nakai" ;;
     collisional-axisymmetric-*) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
-    tall[0-9]*-axisymmetric-6 | finetall[0-9]*-axisymmetric-6)
-      # row 6 made higher: tall4 has a = 4; tall4c with the collisional branch, tall4n with friction by Lode angle
-      local a=${1%%-*}
-      a=${a#fine}
-      a=${a#tall}
-      awk -v a="${a%[cn]}" 'BEGIN { H = 0.0972*a
-        printf "--set scenario.height=%g --set material.compressibility=%g --set material.tau0=%g ", H, 6.53e-7/H, 9120*H }'
-      case ${1%%-*} in
+    tall[0-9]*-axisymmetric-[46] | finetall[0-9]*-axisymmetric-[46])
+      case $a in
         *c) echo "--set material.friction=collisional --set material.dilatancy=collisional" ;;
         *n) echo "--set material.yield_surface=matsuoka_nakai" ;;
       esac
