@@ -25,7 +25,7 @@ row() { # NAME MODEL ASPECT_RATIO
 }
 
 echo "aspect_ratio,model,elements,time_s,runout_50,runout_90,runout,runout_experiment,height_final_m,git_hash" > "$here/grains.csv"
-for a in 0.9 2.75 6; do
+for a in 0.9 1.6 2.75 6; do
   # The plane is wide enough for the experiments' run-out and a third; the time 6.5 sqrt(H0/g).
   # shellcheck disable=SC2046
   run column "$a" $(awk -v a=$a 'BEGIN {
