@@ -3,8 +3,9 @@
 // particles, from 2 500 to 1 000 000 of them, and with two threads; then row 3 of table 3, explicit against implicit.
 // CPU time of one thread, best of rounds in turn; wall time for threads. Appends to performance-sph.csv.
 //
-//   bench_sph          everything, row 3 for the first 0.03 s
-//   bench_sph END      row 3 only, up to t = END (0.8 is all of it; the explicit run takes minutes)
+//   bench_sph              everything, row 3 for the first 0.03 s
+//   bench_sph END [MOVED]  row 3 only, up to t = END (0.8 is all of it; the explicit run takes minutes), from particles moved at
+//                          random by up to MOVED/2 spacings
 #include <fmt/core.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -140,7 +141,7 @@ std::array<double, 2> two_threads() {
 }
 
 // Row 3 of table 3, axisymmetric, improved formulation: cases/column-3.toml.
-Simulation row3(Stepping stepping) {
+Simulation row3(Stepping stepping, double moved) {
   Simulation s;
   s.model.viscous = laws::viscous::Variational{.bulk = 2};
   s.model.stepping = stepping;
@@ -154,6 +155,10 @@ Simulation row3(Stepping stepping) {
   const auto geometry = scenario::ColumnGeometry::axisymmetric;
   set_geometry(column, geometry, s.model);
   s.state.particles = make_particles(column, geometry, s.model);
+  Particles& p = s.state.particles;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::uint32_t d : {0u, 1u})
+      p.x[d][i] += moved * s.model.spacing * (random::uniform(1, random::Stream::test, i, d) - 0.5);
   initialise(s.state, s.work, s.model);
   return s;
 }
@@ -166,8 +171,8 @@ struct Solution {
   std::int64_t steps = 0;
 };
 
-Solution solve_row3(Stepping stepping, double end) {
-  Simulation s = row3(stepping);
+Solution solve_row3(Stepping stepping, double end, double moved) {
+  Simulation s = row3(stepping, moved);
   Solution out;
   for (std::size_t k = 0; k < out.front.size(); ++k) {
     const double before = cpu();
@@ -182,8 +187,9 @@ Solution solve_row3(Stepping stepping, double end) {
   return out;
 }
 
-void print_row3(double end) {
-  const Solution implicit = solve_row3(Stepping::implicit, end), plain = solve_row3(Stepping::explicit_euler, end);
+void print_row3(double end, double moved) {
+  const Solution implicit = solve_row3(Stepping::implicit, end, moved),
+                 plain = solve_row3(Stepping::explicit_euler, end, moved);
   fmt::print("row 3 of table 3: viscous force evaluations, front [m], radius of 90 % of the mass [m]:\n");
   for (std::size_t k = 0; k < 8; ++k)
     fmt::print(
@@ -199,7 +205,7 @@ void print_row3(double end) {
 
 int main(int argc, char** argv) {
   set_threads(1);
-  if (argc > 1) return print_row3(std::stod(argv[1])), 0;
+  if (argc > 1) return print_row3(std::stod(argv[1]), argc > 2 ? std::stod(argv[2]) : 0), 0;
   std::ofstream csv("performance-sph.csv", std::ios::app);
   if (csv.tellp() == 0) csv << "host,commit,what,value\n";
   const auto record = [&](const std::string& what, double value) {
@@ -218,5 +224,5 @@ int main(int argc, char** argv) {
       "{:.2f} by CPU time of the busier thread\n",
       fastest / slowest, scaling[0], scaling[1]);
   record("sph_two_threads", scaling[0]);
-  print_row3(0.03);
+  print_row3(0.03, 0);
 }
