@@ -136,22 +136,30 @@ void remember_origin(Engine& engine, const PairList& pairs) {
   }
 }
 
-// A number that tells the grains of one moment from those of any other.
+// A number that tells the grains of one moment from those of any other. Eight words at a time, so that it takes one vector
+// multiplication for eight.
 std::uint64_t fingerprint(const Grains& g) {
-  std::array<std::uint64_t, 8> lanes{};
+  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;
+  using Words = std::uint64_t __attribute__((vector_size(64)));
+  Words lanes{};
   const auto add = [&](const void* data, std::size_t bytes) {
-    for (std::size_t b = 0; b < bytes; b += sizeof lanes) {
-      std::array<std::uint64_t, 8> words{};
-      std::memcpy(words.data(), static_cast<const char*>(data) + b, std::min(sizeof words, bytes - b));
-      for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k] = std::rotl(lanes[k] ^ words[k], 29) * 0x9e3779b97f4a7c15;
-    }
+    const auto* from = static_cast<const char*>(data);
+    const auto mix = [&](std::size_t begin, std::size_t count) {
+      Words words{};
+      std::memcpy(&words, from + begin, count);
+      const Words mixed = lanes ^ words;
+      lanes = (mixed << 29 | mixed >> 35) * odd;
+    };
+    std::size_t b = 0;
+    for (; b + sizeof lanes <= bytes; b += sizeof lanes) mix(b, sizeof lanes);
+    if (b < bytes) mix(b, bytes - b);
   };
   for (const auto* values : {&g.x, &g.v, &g.omega, &g.force, &g.torque})
     add(values->data(), values->size() * sizeof(Vec3));
   for (const auto* values : {&g.diameter, &g.mass, &g.inertia}) add(values->data(), values->size() * sizeof(double));
   add(g.species.data(), g.species.size() * sizeof(std::int32_t));
   std::uint64_t all = static_cast<std::uint64_t>(g.flowing);
-  for (const std::uint64_t lane : lanes) all = std::rotl(all ^ lane, 29) * 0x9e3779b97f4a7c15;
+  for (std::size_t k = 0; k < 8; ++k) all = std::rotl(all ^ lanes[k], 29) * odd;
   return all;
 }
 
