@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
+#include "core/simd.hpp"
 
 namespace bagnold::cg {
 namespace {
@@ -85,19 +86,38 @@ struct NodeInBins {
 // Adds the expansions of `m` at a node. Channels from `first_stress` on use Phi.
 void add_expansions(const BinMoments& m, const Table& t, const NodeInBins& node, std::size_t first_stress,
                     double* value, double* slope) {
-  const auto width = static_cast<std::size_t>(m.width);
+  constexpr std::size_t lanes = Pack::lanes, most = kFlowing / lanes;
+  const auto width = static_cast<std::size_t>(m.width), terms = static_cast<std::size_t>(t.terms),
+             packs = width / lanes;
+  Pack values[most], slopes[most];
+  Mask is_stress[most];
+  for (std::size_t q = 0; q < packs; ++q) {
+    values[q] = Pack::load_unaligned(value + q * lanes);
+    slopes[q] = Pack::load_unaligned(slope + q * lanes);
+    Pack beyond;
+    for (std::size_t c = 0; c < lanes; ++c) beyond.set(static_cast<int>(c), q * lanes + c < first_stress ? 1 : -1);
+    is_stress[q] = beyond < Pack(0);
+  }
   const std::int64_t lo = std::max(node.bin - t.reach, m.first), hi = std::min(node.bin + t.reach, m.first + m.count);
   for (std::int64_t b = lo; b < hi; ++b) {
     const double* d = t.row(node.phase, b - node.bin);
-    const double* bin = m.data.data() + static_cast<std::size_t>((b - m.first) * m.terms) * width;
-    const auto terms = static_cast<std::size_t>(t.terms);
-    for (std::size_t k = 0; k < terms; ++k) {
-      const double *M = bin + k * width, integral = d[k], kernel = d[terms + k], derivative = d[2 * terms + k];
-      for (std::size_t c = 0; c < first_stress; ++c) value[c] += kernel * M[c];
-      for (std::size_t c = 0; c < first_stress; ++c) slope[c] += derivative * M[c];
-      for (std::size_t c = first_stress; c < width; ++c) value[c] += integral * M[c];
-      for (std::size_t c = first_stress; c < width; ++c) slope[c] += kernel * M[c];
+    const double* M = m.data.data() + static_cast<std::size_t>((b - m.first) * m.terms) * width;
+    for (std::size_t k = 0; k < terms; ++k, M += width) {
+      const double integral = d[k], kernel = d[terms + k], derivative = d[2 * terms + k];
+      for (std::size_t q = 0; q < packs; ++q) {
+        const Pack moments = Pack::load_unaligned(M + q * lanes);
+        values[q] += select(is_stress[q], Pack(integral), Pack(kernel)) * moments;
+        slopes[q] += select(is_stress[q], Pack(kernel), Pack(derivative)) * moments;
+      }
+      for (std::size_t c = packs * lanes; c < width; ++c) {
+        value[c] += (c < first_stress ? kernel : integral) * M[c];
+        slope[c] += (c < first_stress ? derivative : kernel) * M[c];
+      }
     }
+  }
+  for (std::size_t q = 0; q < packs; ++q) {
+    values[q].store_unaligned(value + q * lanes);
+    slopes[q].store_unaligned(slope + q * lanes);
   }
 }
 
