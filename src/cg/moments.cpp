@@ -11,6 +11,8 @@
 #include "core/error.hpp"
 #include "core/simd.hpp"
 
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace bagnold::cg {
 namespace {
 
