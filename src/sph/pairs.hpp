@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/memory.hpp"
 #include "sph/images.hpp"
 
 namespace bagnold::sph {
@@ -13,7 +14,7 @@ inline constexpr std::int64_t pair_block = 32;  // particles a sweep takes at a 
 
 struct Pairs {
   std::vector<std::int64_t> offset;
-  std::vector<std::int32_t> index;
+  std::vector<std::int32_t, LargePages<std::int32_t>> index;
   Images images;
   std::int64_t elements(std::int64_t n) const { return n + images.size() + 1; }  // particles, images, the dummy
 };

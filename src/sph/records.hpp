@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/memory.hpp"
 #include "core/simd.hpp"
 #include "sph/pairs.hpp"
 
@@ -13,7 +14,7 @@ namespace bagnold::sph {
 template <int Width>
 struct Records {
   static_assert(Width % Pack::lanes == 0);
-  std::vector<Pack> data;
+  std::vector<Pack, LargePages<Pack>> data;
   double* at(std::int64_t i) { return reinterpret_cast<double*>(data.data()) + i * Width; }
   const double* at(std::int64_t i) const { return reinterpret_cast<const double*>(data.data()) + i * Width; }
   void resize(std::int64_t elements) {
