@@ -10,8 +10,9 @@ namespace {
 constexpr std::int64_t block = 512;
 
 // Everything the loop needs, as numbers and laws of known type.
-template <class Rheology, class Surface, class Dilatancy, class Regularisation>
+template <class Rheology, class Surface, class Dilatancy, class Regularisation, bool bulk_viscosity>
 struct Laws {
+  static constexpr bool has_bulk = bulk_viscosity;  // of its own: what pair forces contain is nowhere read
   typename Rheology::Excess excess;
   typename Surface::Shape shape;
   Dilatancy dilatancy;
@@ -39,9 +40,11 @@ void eight(const L& law, const Pack& rho, const Pack& gamma, const Pack& lode, P
   viscosity = law.regularisation.viscosity(Pack(law.static_friction * pressure), eta0, gamma);
   if constexpr (!decltype(law.shape)::circular)
     for (int k = 0; k < Pack::lanes; ++k) viscosity.set(k, viscosity[k] * law.shape(lode[k]));
-  bulk = law.bulk * viscosity;
-  if (law.dilatant > 0)  // dp/dgamma = 2 p/gamma sensitivity, finite at rest
-    bulk += law.dilatant * (2 * pressure * laws::eos::sensitivity(cubic, safe) / max(gamma, Pack(1e-12)));
+  if constexpr (L::has_bulk) {
+    // dp/dgamma = 2 p/gamma sensitivity, finite at rest
+    const Pack dp = 2 * pressure * laws::eos::sensitivity(cubic, safe) / max(gamma, Pack(1e-12));
+    bulk = law.bulk * viscosity + law.dilatant * dp;
+  }
 }
 
 template <class L>
@@ -59,13 +62,13 @@ double sweep(const L& law, Work& w, Particles& p) {
       };
       // lanes beyond the last particle are filled with loose material: no pressure, no viscosity
       const Pack rho = load(p.rho, 0.1 * law.grains.grain_density), gamma = load(w.shear_rate, 0);
-      Pack root = load(p.root, 0), lode{}, pressure, viscosity, bulk;
+      Pack root = load(p.root, 0), lode{}, pressure, viscosity, bulk{};
       if constexpr (!decltype(law.shape)::circular) lode = load(w.lode, 0);
       eight(law, rho, gamma, lode, root, pressure, viscosity, bulk);
       std::memcpy(p.root.data() + i, &root, lanes * sizeof(double));
       std::memcpy(w.pressure.data() + i, &pressure, lanes * sizeof(double));
       std::memcpy(w.viscosity.data() + i, &viscosity, lanes * sizeof(double));
-      std::memcpy(w.bulk.data() + i, &bulk, lanes * sizeof(double));
+      if constexpr (L::has_bulk) std::memcpy(w.bulk.data() + i, &bulk, lanes * sizeof(double));
       most = max(most, Pack(viscosity / rho));
     }
     largest[static_cast<std::size_t>(begin / block)] = bagnold::largest(most);
@@ -84,7 +87,7 @@ double constitutive(Work& w, Particles& p, const Model& model) {
           const auto& regularisation, const auto& viscous) {
         const double mu_s = rheology.static_friction();
         const Laws<std::decay_t<decltype(rheology)>, std::decay_t<decltype(surface)>, std::decay_t<decltype(dilatancy)>,
-                   std::decay_t<decltype(regularisation)>>
+                   std::decay_t<decltype(regularisation)>, std::decay_t<decltype(viscous)>::corrected>
             law{rheology.excess(), surface.shape(mu_s), dilatancy,        grains,   regularisation, mu_s,
                 m.grain_diameter,  viscous.bulk,        viscous.dilatant, model.dim};
         return sweep(law, w, p);

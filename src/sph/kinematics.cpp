@@ -115,7 +115,7 @@ void sum_neighbours(Work& w, const PairShape<D, Kernel> shape, std::int64_t begi
         sum[At::concentration] += area * shape.w(R);
       }
     });
-    std::copy_n(sum, At::size, all + (i - begin) * At::size);
+    for (int m = 0; m < At::size; ++m) all[(i - begin) * At::size + m] = sum[m];
   }
   lane_sums(all, static_cast<int>(end - begin) * At::size, sums);
 }

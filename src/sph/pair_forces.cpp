@@ -65,7 +65,7 @@ void sum_rates(Work& w, const PairShape<D, Kernel> shape, double coefficient, do
                  s = mf * strength<D, Mean, viscous, artificial>(r2, vr, self, other, coefficient, alpha_h_c);
       for (int d = 0; d < D; ++d) sum[d] += s * r[d];
     });
-    std::copy_n(sum, D, all + (i - begin) * D);
+    for (int d = 0; d < D; ++d) all[(i - begin) * D + d] = sum[d];
   }
   lane_sums(all, static_cast<int>(end - begin) * D, sums);
 }
