@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "core/box.hpp"
 #include "core/fields.hpp"
+#include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/random.hpp"
 #include "core/registry.hpp"
@@ -129,6 +131,16 @@ TEST(Registry, MakesLawsByName) {
   EXPECT_EQ(name_of(*two), "two");
   EXPECT_EQ(std::get<Two>(*two).value, 2);
   EXPECT_FALSE(Laws::make("three"));
+}
+
+TEST(LargePages, SmallArraysFillCacheLinesAndLargeOnesPages) {
+  const auto address = [](const auto& a) { return reinterpret_cast<std::uintptr_t>(a.data()); };
+  std::vector<std::int32_t, LargePages<std::int32_t>> small(3, 7), large(3 << 20, 7);
+  EXPECT_EQ(address(small) % 64, 0u);
+  EXPECT_EQ(address(large) % LargePages<std::int32_t>::page, 0u);
+  large.resize(5 << 20, 8);
+  EXPECT_EQ(std::count(large.begin(), large.end(), 7), 3 << 20);
+  EXPECT_EQ(large.back(), 8);
 }
 
 }  // namespace
