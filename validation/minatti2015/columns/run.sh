@@ -60,9 +60,10 @@ if [ ${#runs[@]} = 0 ]; then
   for row in 1 2 3 4 5 6; do
     runs+=(improved-axisymmetric-$row fine-axisymmetric-$row cone-axisymmetric-$row finecone-axisymmetric-$row finelade-axisymmetric-$row improved-planar-$row literal-planar-$row stepped-planar-$row)
   done
-  runs+=(improved-cylinder-3 collisional-axisymmetric-5 collisional-axisymmetric-6)
+  runs+=(improved-cylinder-3 cone-cylinder-3 collisional-axisymmetric-5 collisional-axisymmetric-6)
   runs+=(tall4-axisymmetric-6 tall4c-axisymmetric-6 tall6-axisymmetric-6 tall6c-axisymmetric-6)
   runs+=(tall4n-axisymmetric-6 tall6n-axisymmetric-6 finetall4n-axisymmetric-6)
+  runs+=(finetall1.2-axisymmetric-4 finetall1.2n-axisymmetric-4 finetall2.0-axisymmetric-4 finetall2.0n-axisymmetric-4)
 fi
 for run in "${runs[@]}"; do
   grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
@@ -88,7 +89,7 @@ header="row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop
 rows() { # of the runs named
   for directory in "$@"; do
     s=$directory/summary.json
-    [ -f "$s" ] || continue
+    grep -q '"status": "completed"' "$s" 2> /dev/null || continue
     name=$(basename "$directory")
     rest=${name%-*}
     awk -v OFS=, -v row="${name##*-}" -v geometry="${rest##*-}" -v formulation="${rest%%-*}" -v a="$(value "$s" aspect_ratio)" \
