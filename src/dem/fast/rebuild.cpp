@@ -49,9 +49,11 @@ void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
 }
 
 // Rows of `doubles` numbers in their new order; `was`: where that of each grain was. finish(row, slab, k) may change row k.
+// `sorted` is memory to write to, and afterwards that of the old rows: fresh memory costs more than the copying.
 template <std::size_t doubles, class Finish>
-void permute(const Engine& engine, Aligned<double>& rows, const std::vector<std::uint32_t>& was, Finish&& finish) {
-  Aligned<double> sorted(engine.grain.size() * doubles);
+void permute(const Engine& engine, Aligned<double>& rows, Aligned<double>& sorted,
+             const std::vector<std::uint32_t>& was, Finish&& finish) {
+  sorted.resize(engine.grain.size() * doubles);
   parallel_for(
       static_cast<std::int64_t>(engine.slabs.size()),
       [&](std::int64_t s) {
@@ -165,14 +167,23 @@ void rebuild(Engine& engine, DemState& state) {
   const std::vector<std::uint32_t> was = engine.row;
   engine.sections.clear();
   arrange(engine, state.grains, x);
-  permute<position_doubles>(engine, engine.rows.position, was, [&](double* row, const Slab& slab, std::size_t k) {
-    if (k < slab.end) std::copy_n(&x[at(engine.grain[k])].x, 3, row);
-    if (k == slab.end + 1) row[0] = 0.3 * state.grains.diameter[0];  // the two that never touch
-  });
-  permute<velocity_doubles>(engine, engine.rows.velocity, was, [](double*, const Slab&, std::size_t) {});
-  permute<force_doubles>(engine, engine.rows.force, was, [](double* row, const Slab& slab, std::size_t k) {
-    if (k >= slab.moving_end) std::fill_n(row, force_doubles, 0.0);  // forces on the base are nobody's business
-  });
+  {
+    Aligned<double> sorted;
+    permute<position_doubles>(engine, engine.rows.position, sorted, was,
+                              [&](double* row, const Slab& slab, std::size_t k) {
+                                if (k < slab.end) std::copy_n(&x[at(engine.grain[k])].x, 3, row);
+                                if (k == slab.end + 1)
+                                  row[0] = 0.3 * state.grains.diameter[0];  // the two that never touch
+                              });
+  }
+  {
+    static_assert(velocity_doubles == force_doubles);
+    Aligned<double> sorted;
+    permute<velocity_doubles>(engine, engine.rows.velocity, sorted, was, [](double*, const Slab&, std::size_t) {});
+    permute<force_doubles>(engine, engine.rows.force, sorted, was, [](double* row, const Slab& slab, std::size_t k) {
+      if (k >= slab.moving_end) std::fill_n(row, force_doubles, 0.0);  // forces on the base are nobody's business
+    });
+  }
   measure(engine);
   list_inner(engine, touching);
   ++state.rebuilds;
