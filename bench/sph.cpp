@@ -3,9 +3,9 @@
 // particles, from 2 500 to 1 000 000 of them, and with two threads; then row 3 of table 3, explicit against implicit.
 // CPU time of one thread, best of rounds in turn; wall time for threads. Appends to performance-sph.csv.
 //
-//   bench_sph              everything, row 3 for the first 0.03 s
-//   bench_sph END [MOVED]  row 3 only, up to t = END (0.8 is all of it; the explicit run takes minutes), from particles moved at
-//                          random by up to MOVED/2 spacings
+//   bench_sph                            everything, row 3 for the first 0.03 s
+//   bench_sph END [MEMBERS [DISORDER]]   row 3 only, up to t = END (0.8 is all of it; an explicit run takes minutes), means of
+//                                        MEMBERS runs, particles moved by up to DISORDER (0.0005) spacings at the start
 #include <fmt/core.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -43,6 +43,11 @@ double cpu() {
   getrusage(RUSAGE_SELF, &use);
   return static_cast<double>(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
          1e-6 * static_cast<double>(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
+}
+double thread_cpu() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 std::string host() {
@@ -111,11 +116,7 @@ std::vector<Row> sizes() {
 double busiest() {
   double most = 0;
 #pragma omp parallel reduction(max : most)
-  {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    most = static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  }
+  most = thread_cpu();
   return most;
 }
 
@@ -138,8 +139,8 @@ std::array<double, 2> two_threads() {
   return {best[1][0] / best[0][0], best[1][1] / best[0][1]};
 }
 
-// Row 3 of table 3, axisymmetric, improved formulation: cases/column-3.toml.
-Simulation row3(Stepping stepping, double moved) {
+// Row 3 of table 3, axisymmetric, improved formulation, `disorder` spacings off its lattice at random.
+Simulation row3(Stepping stepping, double disorder, std::uint64_t seed) {
   Simulation s;
   s.model.viscous = laws::viscous::Variational{.bulk = 2};
   s.model.stepping = stepping;
@@ -149,61 +150,91 @@ Simulation row3(Stepping stepping, double moved) {
                       .density_diffusion = 0.03,
                       .base_friction = 1,
                       .cg_tolerance = 3e-4};
-  const scenario::ContinuumColumn column;
+  const scenario::ContinuumColumn column{.disorder = disorder};
   const auto geometry = scenario::ColumnGeometry::axisymmetric;
   set_geometry(column, geometry, s.model);
-  s.state.particles = make_particles(column, geometry, s.model);
-  Particles& p = s.state.particles;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    for (std::uint32_t d : {0u, 1u})
-      p.x[d][i] += moved * s.model.spacing * (random::uniform(1, random::Stream::test, i, d) - 0.5);
+  s.state.particles = make_particles(column, geometry, s.model, seed);
   initialise(s.state, s.work, s.model);
   return s;
 }
 
-// Cost, front and radius of 90 % of the mass at eight times up to `end`. The front hangs on single particles: moving all
-// of them by a thousandth of a spacing at the start moves it by 2 % later on, the radius by 0.3 %.
+// Cost, front and radius of 90 % of the mass at eight times up to `end`.
 struct Solution {
   std::array<double, 8> front{}, radius{}, evaluations{};
   double seconds = 0;
-  std::int64_t steps = 0;
 };
 
-Solution solve_row3(Stepping stepping, double end, double moved) {
-  Simulation s = row3(stepping, moved);
+Solution solve(Simulation s, double end) {
   Solution out;
   for (std::size_t k = 0; k < out.front.size(); ++k) {
-    const double before = cpu();
+    const double before = thread_cpu();
     while (s.state.time < end * static_cast<double>(k + 1) / 8) step(s.state, s.work, s.model);
-    out.seconds += cpu() - before;
+    out.seconds += thread_cpu() - before;
     refresh(s.state, s.work, s.model);
     out.front[k] = find_front(s.state, s.work, s.model).connected;
     out.radius[k] = radii(s.state, s.model).at(0.9);
     out.evaluations[k] = static_cast<double>(s.state.force_evaluations);
   }
-  out.steps = s.state.step;
   return out;
 }
 
-void print_row3(double end, double moved) {
-  const Solution implicit = solve_row3(Stepping::implicit, end, moved),
-                 plain = solve_row3(Stepping::explicit_euler, end, moved);
-  fmt::print("row 3 of table 3: viscous force evaluations, front [m], radius of 90 % of the mass [m]:\n");
-  for (std::size_t k = 0; k < 8; ++k)
-    fmt::print(
-        "  t = {:6.4f} s: implicit {:7.0f} {:.5f} {:.5f}; explicit {:8.0f} {:.5f} {:.5f}; {:.1f} x {:.2f} % {:.2f} %\n",
-        end * static_cast<double>(k + 1) / 8, implicit.evaluations[k], implicit.front[k], implicit.radius[k],
-        plain.evaluations[k], plain.front[k], plain.radius[k], plain.evaluations[k] / implicit.evaluations[k],
-        100 * (implicit.front[k] / plain.front[k] - 1), 100 * (implicit.radius[k] / plain.radius[k] - 1));
-  fmt::print("  implicit {:.2f} s, {} steps; explicit {:.2f} s, {} steps; {:.1f} times faster\n", implicit.seconds,
-             implicit.steps, plain.seconds, plain.steps, plain.seconds / implicit.seconds);
+struct Mean {
+  double value = 0, error = 0;  // of the mean itself; no error from one value
+};
+template <class Value>
+Mean mean(std::size_t n, Value&& value) {
+  double sum = 0, squares = 0;
+  for (std::size_t m = 0; m < n; ++m) sum += value(m);
+  const double average = sum / static_cast<double>(n);
+  for (std::size_t m = 0; m < n; ++m) squares += (value(m) - average) * (value(m) - average);
+  return {average, n > 1 ? std::sqrt(squares / static_cast<double>(n * (n - 1))) : 0.0};
+}
+
+// Fronts hang on single particles: moving all of them by half a thousandth of a spacing at the start moves a front by 2 %
+// later on, and the radius of 90 % of the mass by 0.3 %. So explicit and implicit are compared in the mean of `members` runs.
+void print_row3(double end, std::size_t members, double disorder, int threads) {
+  std::vector<Solution> implicit(members), plain(members);
+#pragma omp parallel for schedule(dynamic) collapse(2) num_threads(threads)
+  for (int stepping = 0; stepping < 2; ++stepping)
+    for (std::size_t m = 0; m < members; ++m)
+      (stepping == 0 ? plain : implicit)[m] =
+          solve(row3(stepping == 0 ? Stepping::explicit_euler : Stepping::implicit, disorder, m + 1), end);
+
+  fmt::print("row 3 of table 3, {} run(s) each: viscous force evaluations, front and radius of 90 % of the mass [m]\n",
+             members);
+  const auto average = [&](const std::vector<Solution>& runs, const std::array<double, 8> Solution::*what,
+                           std::size_t k) { return mean(members, [&](std::size_t m) { return (runs[m].*what)[k]; }); };
+  const auto compare = [](Mean a, Mean b) {
+    return fmt::format("{:.5f} {:.5f} ({:+.2f} +- {:.2f} %)", a.value, b.value, 100 * (a.value / b.value - 1),
+                       100 * std::hypot(a.error, b.error) / b.value);
+  };
+  for (std::size_t k = 0; k < 8; ++k) {
+    const double few = average(implicit, &Solution::evaluations, k).value,
+                 many = average(plain, &Solution::evaluations, k).value;
+    fmt::print("  t = {:6.4f} s: implicit {:6.0f}, explicit {:7.0f}, {:4.1f} x fewer; front {}; radius {}\n",
+               end * static_cast<double>(k + 1) / 8, few, many, many / few,
+               compare(average(implicit, &Solution::front, k), average(plain, &Solution::front, k)),
+               compare(average(implicit, &Solution::radius, k), average(plain, &Solution::radius, k)));
+  }
+  const double quick = mean(members, [&](std::size_t m) { return implicit[m].seconds; }).value,
+               slow = mean(members, [&](std::size_t m) { return plain[m].seconds; }).value;
+  fmt::print("  implicit {:.2f} s, explicit {:.2f} s of CPU time: {:.1f} times faster\n", quick, slow, slow / quick);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  const int cores = threads();
   set_threads(1);
-  if (argc > 1) return print_row3(std::stod(argv[1]), argc > 2 ? std::stod(argv[2]) : 0), 0;
+  if (argc > 1) {
+    const std::size_t members = argc > 2 ? std::stoul(argv[2]) : 1;
+    print_row3(std::stod(argv[1]), members,
+               argc > 3      ? std::stod(argv[3])
+               : members > 1 ? 5e-4
+                             : 0,
+               members > 1 ? cores : 1);
+    return 0;
+  }
   std::ofstream csv("performance-sph.csv", std::ios::app);
   if (csv.tellp() == 0) csv << "host,commit,what,value\n";
   const auto record = [&](const std::string& what, double value) {
@@ -222,5 +253,5 @@ int main(int argc, char** argv) {
       "{:.2f} by CPU time of the busier thread\n",
       fastest / slowest, scaling[0], scaling[1]);
   record("sph_two_threads", scaling[0]);
-  print_row3(0.03, 0);
+  print_row3(0.03, 1, 0, 1);
 }

@@ -26,8 +26,8 @@ constexpr double steady_window = 0.25;  // s, over which it is taken, whatever i
 class SphModel final : public Model {
  public:
   explicit SphModel(SphInput input) : in_(std::move(input)) {
-    state_.particles =
-        on_plane() ? make_particles(in_.plane, in_.model) : make_particles(in_.column, in_.geometry, in_.model);
+    state_.particles = on_plane() ? make_particles(in_.plane, in_.model)
+                                  : make_particles(in_.column, in_.geometry, in_.model, in_.seed);
     initialise(state_, work_, in_.model);
     state_.keep_ledger = in_.energy_ledger;
   }

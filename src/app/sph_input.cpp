@@ -21,6 +21,7 @@ sph::Material read_material(const config::Section& section) {
 SphInput read_sph(config::Case& input) {
   const config::Section root = input.root(), scene = root.child("scenario"), numerics = root.child("numerics");
   SphInput in;
+  in.seed = static_cast<std::uint64_t>(root.get<std::int64_t>("seed", 1, at_least(0)));
   in.model.material = read_material(root.child("material"));
   in.model.numerics = numerics.read<sph::Numerics>();
   in.model.kernel = numerics.read_law<laws::SphKernels>("kernel", "minatti2015");

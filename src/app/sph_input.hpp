@@ -1,6 +1,6 @@
 // The part of a case that belongs to the continuum model.
 #pragma once
-#include <optional>
+#include <cstdint>
 #include <string>
 
 #include "config/case.hpp"
@@ -16,6 +16,7 @@ struct SphInput {
   scenario::ContinuumColumn column;
   scenario::ColumnGeometry geometry = scenario::ColumnGeometry::planar;
   sph::Model model;
+  std::uint64_t seed = 1;
   double end = 0;
   bool energy_ledger = false;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/random.hpp"
+
 namespace bagnold::scenario {
 
 void set_geometry(const ContinuumColumn& column, ColumnGeometry geometry, sph::Model& model) {
@@ -15,18 +17,19 @@ void set_geometry(const ContinuumColumn& column, ColumnGeometry geometry, sph::M
   model.gravity[static_cast<std::size_t>(model.vertical())] = -9.81;
 }
 
-sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geometry, const sph::Model& model) {
-  const double dp = column.spacing;
-  const auto up = std::max<std::int64_t>(1, std::llround(column.height / dp)),
-             out = std::max<std::int64_t>(1, std::llround(column.radius / dp));
+sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geometry, const sph::Model& model,
+                              std::uint64_t seed) {
+  const auto up = std::max<std::int64_t>(1, std::llround(column.height / column.spacing)),
+             out = std::max<std::int64_t>(1, std::llround(column.radius / column.spacing));
+  const double dx = column.radius / static_cast<double>(out), dz = column.height / static_cast<double>(up);
   std::vector<std::array<double, 2>> base;  // horizontal positions
   for (std::int64_t a = geometry == ColumnGeometry::axisymmetric ? 0 : -out; a < out; ++a) {
-    const double x = (static_cast<double>(a) + 0.5) * dp;
+    const double x = (static_cast<double>(a) + 0.5) * dx;
     if (geometry != ColumnGeometry::cylinder)
       base.push_back({x, 0});
     else
       for (std::int64_t b = -out; b < out; ++b)
-        if (const double y = (static_cast<double>(b) + 0.5) * dp; x * x + y * y < column.radius * column.radius)
+        if (const double y = (static_cast<double>(b) + 0.5) * dx; x * x + y * y < column.radius * column.radius)
           base.push_back({x, y});
   }
   // Rows of the lattice below the surface, over each place of the base.
@@ -34,7 +37,7 @@ sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geom
   std::vector<std::int64_t> rows;
   std::int64_t count = 0;
   for (const auto& [x, y] : base) {
-    const double lost = std::sqrt(x * x + y * y) * slope / dp;
+    const double lost = std::sqrt(x * x + y * y) * slope / dz;
     rows.push_back(std::max<std::int64_t>(0, up - static_cast<std::int64_t>(std::llround(std::min(lost, 1e9)))));
     count += rows.back();
   }
@@ -45,16 +48,21 @@ sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geom
   for (std::size_t place = 0; place < base.size(); ++place)
     for (std::int64_t b = 0; b < rows[place]; ++b, ++i) {
       const auto [x, y] = base[place];
-      const double z = (static_cast<double>(b) + 0.5) * dp,
-                   pressure = rho0 * 9.81 * (static_cast<double>(rows[place]) * dp - z);
+      const double z = (static_cast<double>(b) + 0.5) * dz,
+                   pressure = rho0 * 9.81 * (static_cast<double>(rows[place]) * dz - z);
       p.x[0][i] = x;
       if (model.dim == 3) p.x[1][i] = y;
       p.x[vertical][i] = z;
       p.root[i] = std::sqrt(Kt * pressure);
       p.rho[i] = rho0 * (1 + Kt * pressure);
-      const double volume = model.dim == 3 ? dp * dp * dp : dp * dp * (model.axisymmetric ? 2 * M_PI * x : 1);
+      const double volume = model.dim == 3 ? dx * dx * dz : dx * dz * (model.axisymmetric ? 2 * M_PI * x : 1);
       p.mass[i] = p.rho[i] * volume;
     }
+  const double reach = column.disorder * column.spacing;
+  for (std::size_t d = 0; reach > 0 && d < static_cast<std::size_t>(model.dim); ++d)
+    for (i = 0; i < p.mass.size(); ++i)
+      p.x[d][i] +=
+          reach * (2 * random::uniform(seed, random::Stream::perturbation, i, static_cast<std::uint32_t>(d)) - 1);
   return p;
 }
 

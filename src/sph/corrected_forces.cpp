@@ -107,7 +107,7 @@ void pressure_sweep(Work& w, const Particles& p, const Model& model, double coef
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) force[a] += (aj * self[F::P + a * D + b] + ai * other[F::P + a * D + b]) * r[b];
       const Pack weight = coefficient * 0.5 * (self[F::area] * other[F::volume] + other[F::area] * self[F::volume]);
-      const Pack kk = Mean::of(Pack(self[F::eta]), other[F::eta]) * weight * f / (r2 + tiny);
+      const Pack kk = Mean::over(Pack(r2 + tiny), Pack(self[F::eta]), other[F::eta]) * weight * f;
       w.k[q] = kk;
       const Pack stress = other[F::volume] * ai * ai, isotropic = (other[F::eta] / 3 + other[F::zeta]) * stress;
       around += 2 * other[F::eta] * stress * r2;

@@ -122,7 +122,7 @@ void coefficient_sweep(Work& w, const Particles& p, const Model& model) {
       for (int d = 0; d < D; ++d) r[d] = self[F::x + d] - other[F::x + d], r2 += r[d] * r[d];
       const Pack volume = other[F::mass] * other[F::inv_rho] * w.volume[i];
       const Pack kk =
-          coefficient * Mean::of(Pack(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2)) / r2;
+          coefficient * Mean::over(r2, Pack(self[F::eta]), other[F::eta]) * volume * shape.f(shape.ratio(r2));
       w.k[q] = kk;
       for (std::size_t d = 0; d < D; ++d) w.r[d][q] = r[d];
       add_block<D>(block, kk, r);

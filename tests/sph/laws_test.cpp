@@ -141,11 +141,13 @@ TEST(Regularisation, MatchesThePrintedFormWithItsLogarithm) {
 TEST(Mean, LiesBetweenAndIsSymmetric) {
   ViscosityMeans::for_each([](const auto& mean) {
     using M = std::decay_t<decltype(mean)>;
-    EXPECT_DOUBLE_EQ(M::of(3.0, 3.0), 3);
-    EXPECT_DOUBLE_EQ(M::of(1.0, 9.0), M::of(9.0, 1.0));
-    EXPECT_GE(M::of(1.0, 9.0), 1);
-    EXPECT_LE(M::of(1.0, 9.0), 9);
-    EXPECT_EQ(M::of(0.0, 0.0), 0);
+    const auto of = [](double a, double b) { return M::over(1.0, a, b); };
+    EXPECT_DOUBLE_EQ(of(3, 3), 3);
+    EXPECT_DOUBLE_EQ(of(1, 9), of(9, 1));
+    EXPECT_GE(of(1, 9), 1);
+    EXPECT_LE(of(1, 9), 9);
+    EXPECT_EQ(of(0, 0), 0);
+    EXPECT_DOUBLE_EQ(M::over(5.0, 1.0, 9.0), of(1, 9) / 5);
   });
 }
 

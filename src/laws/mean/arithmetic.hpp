@@ -12,11 +12,7 @@ struct Arithmetic {
   static constexpr std::string_view summary = "(a + b)/2";
   static constexpr std::string_view source = "plain average";
   static constexpr auto fields() { return std::tuple<>{}; }
-  template <class T>
-  static T of(T a, T b) {
-    return 0.5 * (a + b);
-  }
-  // The mean over a divisor, in one division.
+  // The mean of a and b over a divisor, in one division.
   template <class T>
   static T over(T divisor, T a, T b) {
     return 0.5 * (a + b) / divisor;

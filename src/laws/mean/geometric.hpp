@@ -13,11 +13,7 @@ struct Geometric {
   static constexpr std::string_view summary = "sqrt(a b)";
   static constexpr std::string_view source = "plain average of logarithms";
   static constexpr auto fields() { return std::tuple<>{}; }
-  template <class T>
-  static T of(T a, T b) {
-    return sqrt(T(a * b));
-  }
-  // The mean over a divisor, in one division.
+  // The mean of a and b over a divisor, in one division.
   template <class T>
   static T over(T divisor, T a, T b) {
     return sqrt(T(a * b)) / divisor;

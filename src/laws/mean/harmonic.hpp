@@ -12,11 +12,7 @@ struct Harmonic {
   static constexpr std::string_view summary = "2 a b/(a + b): the smaller viscosity decides";
   static constexpr std::string_view source = "Cleary 1998; Minatti & Paris 2015, eq. 27";
   static constexpr auto fields() { return std::tuple<>{}; }
-  template <class T>
-  static T of(T a, T b) {
-    return 2 * a * b * reciprocal(max(T(a + b), T(1e-300)));
-  }
-  // The mean over a divisor, in one division.
+  // The mean of a and b over a divisor, in one division.
   template <class T>
   static T over(T divisor, T a, T b) {
     return 2 * a * b / max(T((a + b) * divisor), T(1e-300));
