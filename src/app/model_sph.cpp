@@ -22,6 +22,9 @@ namespace {
 
 constexpr double steady_rate = 1e-3;    // relative change of the mean velocity in a second below which a flow is steady
 constexpr double steady_window = 0.25;  // s, over which it is taken, whatever is written when
+constexpr double rest_speed = 1e-3;     // root mean square over sqrt(g H0) below which a column has arrested ...
+constexpr double rest_after = 2;        // ... later than this many sqrt(H0/g)
+constexpr std::int64_t rest_every = 64;  // steps between looks
 
 class SphModel final : public Model {
  public:
@@ -39,12 +42,17 @@ class SphModel final : public Model {
   double element_steps() const override { return particle_steps_; }
 
   void advance(double until) override {
-    while (state_.time < until && !stop_requested()) {
+    while (state_.time < until && !ended() && !stop_requested()) {
       sph::step(state_, work_, in_.model);
       particle_steps_ += static_cast<double>(state_.particles.size());
-      watch_steadiness();
+      if (on_plane())
+        watch_steadiness();
+      else if (state_.step % rest_every == 0)
+        watch_arrest();
     }
   }
+  bool ended() const override { return in_.stop_when_arrested && arrested_ != 0; }
+  std::string status() const override { return arrested_ != 0 ? "arrested" : "completed"; }
 
   std::vector<NamedArray> state() override {
     auto arrays = named_arrays(state_);
@@ -53,6 +61,7 @@ class SphModel final : public Model {
     arrays.push_back({"mean_velocity_time", &last_time_});
     arrays.push_back({"steady_time", &steady_time_});
     arrays.push_back({"max_inertial_number", &max_i_});
+    arrays.push_back({"arrested", &arrested_});
     return arrays;
   }
   void restored() override { restore(state_, work_, in_.model); }
@@ -264,12 +273,17 @@ class SphModel final : public Model {
   bool on_plane() const { return in_.scenario == "inclined_plane"; }
   double mean_velocity() const { return momentum(state_, in_.model)[0] / total_mass(state_); }
   void watch_steadiness() {
-    if (!on_plane() || state_.time < last_time_ + steady_window) return;
+    if (state_.time < last_time_ + steady_window) return;
     const double mean = mean_velocity(), elapsed = state_.time - last_time_;
     if (steady_time_ == 0 && mean > 0 && std::abs(mean - last_mean_) < steady_rate * mean * elapsed)
       steady_time_ = state_.time;
     last_mean_ = mean;
     last_time_ = state_.time;
+  }
+  void watch_arrest() {
+    const double g = 9.81, H = in_.column.height;
+    arrested_ = state_.time > rest_after * std::sqrt(H / g) &&
+                rms_speed(kinetic_energy(state_, in_.model)) < rest_speed * std::sqrt(g * H);
   }
   double rms_speed(double energy) const { return std::sqrt(2 * energy / total_mass(state_)); }
   // Fresh fields and three-dimensional positions; an infinite inertial number (no pressure) is written as NaN.
@@ -315,6 +329,7 @@ class SphModel final : public Model {
   sph::Work work_;
   double particle_steps_ = 0;
   double last_mean_ = 0, last_time_ = 0, steady_time_ = 0, max_i_ = 0;
+  std::int64_t arrested_ = 0;
 };
 
 }  // namespace

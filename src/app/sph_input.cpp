@@ -45,7 +45,9 @@ SphInput read_sph(config::Case& input) {
     set_geometry(in.column, in.geometry, in.model);
   }
   in.energy_ledger = root.child("output").get<bool>("energy_ledger", false);
-  in.end = root.child("time").get<double>("end", std::nullopt, positive(), "s");
+  const config::Section time = root.child("time");
+  in.end = time.get<double>("end", std::nullopt, positive(), "s");
+  in.stop_when_arrested = time.get<bool>("stop_when_arrested", in.scenario == "column");
   return in;
 }
 

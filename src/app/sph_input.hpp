@@ -18,7 +18,7 @@ struct SphInput {
   sph::Model model;
   std::uint64_t seed = 1;
   double end = 0;
-  bool energy_ledger = false;
+  bool energy_ledger = false, stop_when_arrested = false;
 };
 SphInput read_sph(config::Case& input);
 

@@ -51,6 +51,20 @@ TEST(Cases, ContinuumFieldsOnAGridLieBesideTheParticles) {
     EXPECT_NE(fields.find("Name=\"" + std::string(name) + "\""), std::string::npos) << name;
 }
 
+TEST(Cases, ColumnsStopWhenTheyHaveArrested) {
+  const std::string coarse = "--set scenario.spacing=0.0081 --set time.end=1 ";
+  const auto stopped = run_continuum("column-3.toml", coarse),
+             whole = run_continuum("column-3.toml", coarse + "--set time.stop_when_arrested=false");
+  EXPECT_EQ(stopped["status"], "arrested");
+  EXPECT_EQ(whole["status"], "arrested");
+  EXPECT_LT(stopped["time"], 0.8);
+  EXPECT_GE(whole["time"], 1.0);
+  const double there = stopped["runout"], later = whole["runout"];
+  EXPECT_NEAR(there, later, 0.02);
+  const auto moving = run_continuum("column-3.toml", "--set scenario.spacing=0.0081 --set time.end=0.2");
+  EXPECT_EQ(moving["status"], "completed");
+}
+
 class ColumnToml : public testing::TestWithParam<int> {};
 
 TEST_P(ColumnToml, CollapsesOutwards) {

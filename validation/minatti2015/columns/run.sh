@@ -13,9 +13,12 @@ printed_m0=(- 1.2 1.4 1.2 1.4 1.6 1.6)
 half_dp=(- 0.0006 0.0011 0.00151 0.00162 0.00243 0.00243)
 end=(- 0.3 0.5 0.55 0.75 0.95 1.0) # s, 5.6 sqrt(H0/g) at least
 
-# NAME is FORMULATION-GEOMETRY-ROW.
+# NAME is FORMULATION-GEOMETRY-ROW, or FORMULATION.sSEED-GEOMETRY-ROW for a member of an ensemble: particles start up to 0.0005 dp off
+# their lattice.
 options() {
-  local row=${1##*-} a=
+  local row=${1##*-} a= seed
+  seed=$(sed -n 's/.*\.s\([0-9]*\)-.*/\1/p' <<< "$1")
+  set -- "${1/.s$seed-/-}"
   case $1 in # row 4 or 6 made lower or higher: tall4 has a = 4; tall4c with the collisional branch, tall4n with friction by Lode angle
     *tall[0-9]*)
       a=${1%%-*}
@@ -25,6 +28,7 @@ options() {
     *) echo "--set time.end=${end[row]}" ;;
   esac
   echo "--set output.series_every=0.01 --set output.snapshot_every=0.025 --set output.vtk_every=10"
+  [ -z "$seed" ] || echo "--set scenario.disorder=0.0005 --set seed=$seed"
   case $1 in
     improved-axisymmetric-*) ;; # the case as it is
     fine-axisymmetric-*) echo "--set scenario.spacing=${half_dp[row]}" ;;
@@ -32,6 +36,8 @@ options() {
     finelade-axisymmetric-*) echo "--set material.yield_surface=lade_duncan --set scenario.spacing=${half_dp[row]}" ;;
     finetriaxial-axisymmetric-*) echo "--set material.yield_surface=triaxial_ratio --set scenario.spacing=${half_dp[row]}" ;; # strength that grains show
     finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
+    finefit-axisymmetric-*) # one constant fitted to the six rows
+      echo "--set material.yield_surface=matsuoka_nakai --set material.static_angle_deg=29.5 --set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
     cone-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009 --set material.yield_surface=matsuoka_nakai" ;;
@@ -66,7 +72,7 @@ if [ ${#runs[@]} = 0 ]; then
   runs+=(finetall1.2-axisymmetric-4 finetall1.2n-axisymmetric-4 finetall2.0-axisymmetric-4 finetall2.0n-axisymmetric-4)
 fi
 for run in "${runs[@]}"; do
-  grep -q '"status": "completed"' "$scratch/$run/summary.json" 2>/dev/null && continue
+  grep -q '"status": "\(completed\|arrested\)"' "$scratch/$run/summary.json" 2>/dev/null && continue
   # shellcheck disable=SC2046
   "$program" run "$top/cases/column-${run##*-}.toml" -o "$scratch/$run" --overwrite --quiet $(options "$run") || echo "$run failed" >&2
 done
@@ -89,7 +95,7 @@ header="row,geometry,formulation,aspect_ratio,spacing_m,particles,t_end_s,t_stop
 rows() { # of the runs named
   for directory in "$@"; do
     s=$directory/summary.json
-    grep -q '"status": "completed"' "$s" 2> /dev/null || continue
+    grep -q '"status": "\(completed\|arrested\)"' "$s" 2> /dev/null || continue
     name=$(basename "$directory")
     rest=${name%-*}
     awk -v OFS=, -v row="${name##*-}" -v geometry="${rest##*-}" -v formulation="${rest%%-*}" -v a="$(value "$s" aspect_ratio)" \
