@@ -37,7 +37,7 @@ options() {
     finetriaxial-axisymmetric-*) echo "--set material.yield_surface=triaxial_ratio --set scenario.spacing=${half_dp[row]}" ;; # strength that grains show
     finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
     finefit-axisymmetric-*) # one constant fitted to the six rows
-      echo "--set material.yield_surface=matsuoka_nakai --set material.static_angle_deg=29.5 --set scenario.spacing=${half_dp[row]}" ;;
+      echo "--set material.yield_surface=matsuoka_nakai --set material.static_angle_deg=29.65 --set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
     cone-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009 --set material.yield_surface=matsuoka_nakai" ;;
