@@ -123,7 +123,9 @@ DemInput read_unlocated(config::Case& input) {
   out.end = time.end;
 
   read_scenario(root.child("scenario"), material, seed, out);
-  out.stop_when_arrested = time_section.get<bool>("stop_when_arrested", out.scenario != "grains");
+  out.stop_when_arrested = time.stop_when_arrested;
+  if (out.scenario == "grains" && !time_section.has("stop_when_arrested"))
+    time_section.resolve("stop_when_arrested", out.stop_when_arrested = false);
   out.state.keep_ledger = root.child("output").get<bool>("energy_ledger", out.scenario == "grains");
 
   out.laws = dem::compile(out.model, dem::mean_pair_mass(out.state.grains));

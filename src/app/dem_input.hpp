@@ -29,9 +29,13 @@ struct DemTime {
   static constexpr std::string_view summary = "how long a run lasts and how finely it steps";
   double end = 0;
   std::optional<double> step;
+  bool stop_when_arrested = true;
   static constexpr auto fields() {
-    return std::tuple{required("end", "time", "when the run ends", &DemTime::end, positive()),
-                      field("step", "time", "auto: tc/50 of the stiffest contact type", &DemTime::step, positive())};
+    return std::tuple{
+        required("end", "time", "when the run ends", &DemTime::end, positive()),
+        field("step", "time", "auto: tc/50 of the stiffest contact type", &DemTime::step, positive()),
+        field("stop_when_arrested", "", "end earlier when everything is at rest (scenario grains: default false)",
+              &DemTime::stop_when_arrested)};
   }
 };
 

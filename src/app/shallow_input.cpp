@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/time_keys.hpp"
 #include "core/error.hpp"
 #include "scenario/shallow.hpp"
 
@@ -111,9 +112,9 @@ ShallowInput read_unlocated(Case& input) {
     release_on_terrain(input, release, out);
   }
   read_observers(root.child("observe"), out);
-  const Section time = root.child("time");
-  out.end = time.get<double>("end", std::nullopt, positive(), "time");
-  out.stop_when_arrested = time.get<bool>("stop_when_arrested", true);
+  const auto time = root.child("time").read<TimeKeys>();
+  out.end = time.end;
+  out.stop_when_arrested = time.stop_when_arrested;
   shallow::refresh(out.solver, out.state);
   return out;
 }

@@ -1,5 +1,6 @@
 #include "app/sph_input.hpp"
 
+#include "app/time_keys.hpp"
 #include "app/topics.hpp"
 
 namespace bagnold::app {
@@ -45,13 +46,16 @@ SphInput read_sph(config::Case& input) {
     set_geometry(in.column, in.geometry, in.model);
   }
   in.energy_ledger = root.child("output").get<bool>("energy_ledger", false);
-  const config::Section time = root.child("time");
-  in.end = time.get<double>("end", std::nullopt, positive(), "s");
-  in.stop_when_arrested = time.get<bool>("stop_when_arrested", in.scenario == "column");
+  const auto time = root.child("time").read<TimeKeys>();
+  in.end = time.end;
+  in.stop_when_arrested = time.stop_when_arrested;
   return in;
 }
 
 void add_sph_topics(std::vector<Topic>& topics) {
+  topics.push_back(topic<scenario::InclinedPlane>("scenario of model sph"));
+  topics.push_back(topic<scenario::ContinuumColumn>("scenario of model sph"));
+  topics.push_back(topic<sph::Numerics>("section of model sph"));
   add_registry<laws::Rheologies>(topics, "friction of the continuum (material.friction)");
   add_registry<laws::YieldSurfaces>(topics, "friction and the Lode angle (material.yield_surface)");
   add_registry<laws::Dilatancies>(topics, "volume fraction of the continuum (material.dilatancy)");

@@ -11,6 +11,10 @@ namespace bagnold::scenario {
 enum class ColumnGeometry { planar, axisymmetric, cylinder };  // full width; r-z; 3D
 
 struct ContinuumColumn {
+  static constexpr std::string_view name = "column";
+  static constexpr std::string_view summary =
+      "column of continuum released on a flat base; geometry = planar, axisymmetric or cylinder (3D)";
+  static constexpr std::string_view source = "Minatti & Paris 2015, section 5.2; Lube et al. 2004";
   double radius = 0.0972, height = 0.0875, spacing = 3.02e-3, slope_deg = 0, disorder = 0;
   static constexpr auto fields() {
     using S = ContinuumColumn;

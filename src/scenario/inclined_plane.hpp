@@ -1,5 +1,6 @@
 // A uniform layer of continuum on an inclined plane, and what it must do.
 #pragma once
+#include <string_view>
 #include <vector>
 
 #include "sph/model.hpp"
@@ -9,6 +10,9 @@ namespace bagnold::scenario {
 
 // Periodic along the slope; x down the slope, z normal to it.
 struct InclinedPlane {
+  static constexpr std::string_view name = "inclined_plane";
+  static constexpr std::string_view summary = "layer of continuum on an inclined plane, from rest";
+  static constexpr std::string_view source = "Minatti & Paris 2015, section 5.1";
   double angle_deg = 25, height = 0.1, length = 0.1, spacing = 5e-3;
   static constexpr auto fields() {
     using S = InclinedPlane;

@@ -22,6 +22,10 @@ struct Material {
 enum class Stepping { minatti2015, implicit, explicit_euler };
 
 struct Numerics {
+  static constexpr std::string_view name = "numerics";
+  static constexpr std::string_view summary =
+      "discretisation; stepping = minatti2015 (explicit, as printed), implicit or explicit_euler; laws: operator, "
+      "kernel, mean";
   double smoothing_ratio = 1.3;  // h/dp
   double cfl = 0.5;
   double viscous_factor = 0.1;      // explicit: dt < cfl viscous_factor rho h^2/eta

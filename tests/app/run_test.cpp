@@ -241,12 +241,15 @@ TEST(Explain, KnowsEveryTopicItLists) {
   const Scratch scratch;
   const Outcome all = bagnold(scratch, "explain");
   ASSERT_EQ(all.exit_code, 0);
-  for (const char* topic : {"linear", "hertz", "mindlin", "spring_slider", "chute", "column", "output", "time"}) {
+  for (const char* topic : {"linear", "hertz", "mindlin", "spring_slider", "chute", "column", "output", "time",
+                            "inclined_plane", "numerics"}) {
     EXPECT_NE(all.out.find(topic), std::string::npos) << topic;
     const Outcome one = bagnold(scratch, std::string("explain ") + topic);
     EXPECT_EQ(one.exit_code, 0) << topic;
     EXPECT_NE(one.out.find(topic), std::string::npos);
   }
+  EXPECT_NE(bagnold(scratch, "explain time").out.find("stop_when_arrested"), std::string::npos);
+  EXPECT_NE(bagnold(scratch, "explain column").out.find("disorder"), std::string::npos);
   const Outcome wrong = bagnold(scratch, "explain lineer");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_NE(wrong.err.find("is 'linear' meant?"), std::string::npos) << wrong.err;
