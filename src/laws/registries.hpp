@@ -46,6 +46,7 @@
 #include "laws/yield_surface/drucker_prager.hpp"
 #include "laws/yield_surface/lade_duncan.hpp"
 #include "laws/yield_surface/matsuoka_nakai.hpp"
+#include "laws/yield_surface/mohr_coulomb.hpp"
 #include "laws/yield_surface/triaxial_ratio.hpp"
 
 namespace bagnold::laws {
@@ -79,7 +80,7 @@ using Rheologies = Registry<rheology::MuI, rheology::MuICollisional>;
 
 // Friction of continua at other Lode angles than that of plane strain.
 using YieldSurfaces = Registry<yield_surface::DruckerPrager, yield_surface::MatsuokaNakai, yield_surface::LadeDuncan,
-                               yield_surface::TriaxialRatio>;
+                               yield_surface::MohrCoulomb, yield_surface::TriaxialRatio>;
 
 // Volume fraction of continua, phi(i).
 using Dilatancies = Registry<dilatancy::Linear, dilatancy::Rational>;

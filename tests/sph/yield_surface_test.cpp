@@ -49,7 +49,7 @@ TEST(YieldSurface, IsOneInPlaneStrainStrongInCompressionAndConvex) {
       const auto shape = law.shape(mu);
       EXPECT_NEAR(shape(0.0), 1, 1e-15);
       EXPECT_GE(shape(1.0), 1);
-      EXPECT_LE(shape(-1.0), 1);
+      EXPECT_LE(shape(-1.0), shape(1.0) * (1 + 1e-15));
       // Of three neighbouring points the middle one lies on or outside the chord.
       constexpr double step = M_PI / 180;
       for (double theta = 0; theta < M_PI; theta += step) {
@@ -73,6 +73,21 @@ TEST(YieldSurface, MatsuokaNakaiHasOneTriaxialFrictionAngle) {
     EXPECT_NEAR(sine(0), sine(M_PI / 3), 1e-12);
     EXPECT_NEAR(sine(M_PI / 6), mu, 1e-12);
     EXPECT_LT(sine(0), mu);
+  }
+}
+
+// The hexagon has sin(phi) = mu at every Lode angle, and Matsuoka & Nakai's cone of the same triaxial angle goes through its corners.
+TEST(YieldSurface, MohrCoulombHasOneFrictionAngleEverywhere) {
+  using laws::yield_surface::MohrCoulomb;
+  for (const double angle : {10.0, 20.9, 30.5, 40.0}) {
+    const double mu = std::tan(angle * M_PI / 180);
+    const auto sine = [](const Principal& s) { return (s[0] - s[2]) / (s[0] + s[2]); };
+    for (double theta = 0; theta <= M_PI / 3; theta += M_PI / 30)
+      EXPECT_NEAR(sine(stresses(MohrCoulomb::shape(mu)(std::cos(3 * theta)) * mu, theta)), mu, 1e-12) << theta;
+    const auto cone = MatsuokaNakai::shape(mu);
+    const double triaxial = sine(stresses(cone(1) * mu, 0));
+    EXPECT_NEAR(MohrCoulomb::shape(triaxial)(1) * triaxial, cone(1) * mu, 1e-12);
+    EXPECT_NEAR(MohrCoulomb::shape(triaxial)(-1) * triaxial, cone(-1) * mu, 1e-12);
   }
 }
 
