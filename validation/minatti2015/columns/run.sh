@@ -36,8 +36,11 @@ options() {
     finelade-axisymmetric-*) echo "--set material.yield_surface=lade_duncan --set scenario.spacing=${half_dp[row]}" ;;
     finetriaxial-axisymmetric-*) echo "--set material.yield_surface=triaxial_ratio --set scenario.spacing=${half_dp[row]}" ;; # strength that grains show
     finecone-axisymmetric-*) echo "--set material.yield_surface=matsuoka_nakai --set scenario.spacing=${half_dp[row]}" ;;
-    finefit-axisymmetric-*) # one constant fitted to the six rows
-      echo "--set material.yield_surface=matsuoka_nakai --set material.static_angle_deg=29.65 --set scenario.spacing=${half_dp[row]}" ;;
+    finemn*-axisymmetric-* | finemc*-axisymmetric-* | mc*-axisymmetric-* | mn*-axisymmetric-*) # another friction angle: finemn29.5
+      local angle=${1%%-*} surface=matsuoka_nakai
+      case $angle in *mc*) surface=mohr_coulomb ;; esac
+      echo "--set material.yield_surface=$surface --set material.static_angle_deg=${angle##*m[nc]}"
+      [ "${1#fine}" = "$1" ] || echo "--set scenario.spacing=${half_dp[row]}" ;;
     improved-planar-*) echo "--set scenario.geometry=planar" ;;
     improved-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009" ;;
     cone-cylinder-3) echo "--set scenario.geometry=cylinder --set scenario.spacing=0.009 --set material.yield_surface=matsuoka_nakai" ;;
