@@ -20,7 +20,7 @@ const std::string printed =
     "' --quiet --set numerics.operator=minatti2015 --set numerics.stepping=minatti2015 --set numerics.shifting=0 "
     "--set numerics.volume_correction=0 --set numerics.density_diffusion=0 --set numerics.cfl=0.5 "
     "--set numerics.artificial_viscosity=0.05 --set scenario.height=0.03 --set scenario.length=0.03 --set "
-    "time.end=0.6 ";
+    "time.end=2 ";
 const std::string often =
     "--set output.series_every=0.002 --set output.snapshot_every=0.05 --set output.vtk_every=0.1 ";
 
@@ -36,7 +36,7 @@ TEST_P(Continuum, InterruptedAndResumedGivesTheSameBits) {
   ASSERT_EQ(cut.exit_code, 75) << cut.err;
   const auto stopped = io::read_json(scratch / "cut" / "summary.json");
   EXPECT_EQ(stopped["status"], "interrupted");
-  EXPECT_LT(stopped["time"], 0.15);
+  EXPECT_LT(stopped["time"], io::read_json(scratch / "whole" / "summary.json")["time"]);
   const Outcome rest = bagnold(scratch, "resume cut --quiet");
   ASSERT_EQ(rest.exit_code, 0) << rest.err;
   expect_same_state(scratch / "whole", scratch / "cut");
