@@ -8,6 +8,7 @@
 #include "app/model.hpp"
 #include "app/signals.hpp"
 #include "app/sph_input.hpp"
+#include "core/constants.hpp"
 #include "io/csv.hpp"
 #include "io/hdf5.hpp"
 #include "io/vtk.hpp"
@@ -237,7 +238,7 @@ class SphModel final : public Model {
         {"smoothing length", fmt::format("{:.4g} m", m.h()), "h"},
         {"sound speed", fmt::format("{:.4g} m/s", m.sound_speed()), "c = 1/sqrt(Kt phi_max rho_s0)"},
         {"Mach number",
-         fmt::format("{:.3g}", std::sqrt(9.81 * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
+         fmt::format("{:.3g}", std::sqrt(earth_gravity * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
          "sqrt(g H)/c; 0.1 or less keeps compression small"},
         {"largest viscosity over density", fmt::format("{:.4g} m^2/s", state_.max_kinematic_viscosity), "at the start"},
         {"largest step", fmt::format("{:.3g} s", step_limit(state_, m)), "eq. 39; sound only when implicit"}};
@@ -281,7 +282,7 @@ class SphModel final : public Model {
     last_time_ = state_.time;
   }
   void watch_arrest() {
-    const double g = 9.81, H = in_.column.height;
+    const double g = earth_gravity, H = in_.column.height;
     arrested_ = state_.time > rest_after * std::sqrt(H / g) &&
                 rms_speed(kinetic_energy(state_, in_.model)) < rest_speed * std::sqrt(g * H);
   }

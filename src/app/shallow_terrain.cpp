@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/shallow_input.hpp"
+#include "core/constants.hpp"
 
 namespace bagnold::app {
 
@@ -14,7 +15,7 @@ void read_terrain(const Case& input, const Section& section, shallow::Definition
   const io::Raster raster = io::read_raster(input.file(section, "elevation"));
   if (io::in_degrees(raster.projection))
     section.fail("elevation", "its coordinates are degrees; expected a projected coordinate system (lengths)");
-  const double g = section.get<double>("gravity", 9.81, positive(), "length/time^2");
+  const double g = section.get<double>("gravity", earth_gravity, positive(), "length/time^2");
   for (std::size_t k = 0; k < raster.values.size(); ++k)
     if (!std::isfinite(raster.values[k]))
       section.fail("elevation",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.hpp"
 #include "core/random.hpp"
 
 namespace bagnold::scenario {
@@ -14,7 +15,7 @@ void set_geometry(const ContinuumColumn& column, ColumnGeometry geometry, sph::M
   model.spacing = column.spacing;
   model.period = {0, 0, 0};
   model.gravity = {0, 0, 0};
-  model.gravity[static_cast<std::size_t>(model.vertical())] = -9.81;
+  model.gravity[static_cast<std::size_t>(model.vertical())] = -earth_gravity;
 }
 
 sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geometry, const sph::Model& model,
@@ -49,7 +50,7 @@ sph::Particles make_particles(const ContinuumColumn& column, ColumnGeometry geom
     for (std::int64_t b = 0; b < rows[place]; ++b, ++i) {
       const auto [x, y] = base[place];
       const double z = (static_cast<double>(b) + 0.5) * dz,
-                   pressure = rho0 * 9.81 * (static_cast<double>(rows[place]) * dz - z);
+                   pressure = rho0 * earth_gravity * (static_cast<double>(rows[place]) * dz - z);
       p.x[0][i] = x;
       if (model.dim == 3) p.x[1][i] = y;
       p.x[vertical][i] = z;

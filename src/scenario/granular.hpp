@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/constants.hpp"
 #include "core/fields.hpp"
 #include "dem/state.hpp"
 #include "scenario/settled_bed.hpp"
@@ -80,7 +81,7 @@ struct Column {
   static constexpr std::string_view name = "column";
   static constexpr std::string_view summary = "cylindrical column of settled grains released on a rough plane";
   static constexpr std::string_view source = "Lube et al. 2004; Lajeunesse et al. 2004";
-  double radius = 0, height = 0, length = 0, base_size_ratio = 1, gravity = 9.81;
+  double radius = 0, height = 0, length = 0, base_size_ratio = 1, gravity = earth_gravity;
   static constexpr auto fields() {
     return std::tuple{required("radius", "length", "r0 of the column", &Column::radius, positive()),
                       required("height", "length", "H0 of the column", &Column::height, positive()),
@@ -97,7 +98,7 @@ struct Heap {
   static constexpr std::string_view summary = "loose grains fall onto a rough plane and form a heap";
   static constexpr std::string_view source = "Zhou et al. 2002 (angle of repose)";
   std::int64_t grains = 1000;
-  double radius = 0, length = 0, drop_height = 0, base_size_ratio = 1, gravity = 9.81;
+  double radius = 0, length = 0, drop_height = 0, base_size_ratio = 1, gravity = earth_gravity;
   static constexpr auto fields() {
     return std::tuple{
         required("grains", "-", "how many", &Heap::grains, at_least(1)),

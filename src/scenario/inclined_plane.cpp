@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 
 namespace bagnold::scenario {
@@ -16,7 +17,7 @@ std::int64_t cells_in(double length, double spacing) {
 }  // namespace
 
 void set_geometry(const InclinedPlane& plane, sph::Model& model) {
-  const double theta = plane.angle_deg * M_PI / 180, g = 9.81;
+  const double theta = plane.angle_deg * M_PI / 180, g = earth_gravity;
   model.dim = 2;
   model.axisymmetric = false;
   model.floor = true;
@@ -46,7 +47,7 @@ sph::Particles make_particles(const InclinedPlane& plane, const sph::Model& mode
 double PlaneFlow::velocity(double z) const { return u_surface * (1 - std::pow(std::max(0.0, 1 - z / height), 1.5)); }
 
 double PlaneFlow::pressure(double z, double grain_density) const {
-  return phi * grain_density * 9.81 * std::cos(angle_deg * M_PI / 180) * std::max(0.0, height - z);
+  return phi * grain_density * earth_gravity * std::cos(angle_deg * M_PI / 180) * std::max(0.0, height - z);
 }
 
 PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model) {
@@ -68,7 +69,7 @@ PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model) {
         flow.phi = dilatancy.phi(flow.i);
       },
       model.material.rheology, model.material.dilatancy);
-  flow.u_surface = 2 * flow.i / (3 * model.material.grain_diameter) * std::sqrt(flow.phi * 9.81 * std::cos(theta)) *
+  flow.u_surface = 2 * flow.i / (3 * model.material.grain_diameter) * std::sqrt(flow.phi * earth_gravity * std::cos(theta)) *
                    std::pow(plane.height, 1.5);
   return flow;
 }
@@ -90,7 +91,7 @@ std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, cons
       next = u;
       for (int picard = 0; picard < 8; ++picard) {
         for (std::size_t k = 0; k < n; ++k) {  // face below cell k
-          const double p = rho * 9.81 * std::cos(theta) * (height - static_cast<double>(k) * dz);
+          const double p = rho * earth_gravity * std::cos(theta) * (height - static_cast<double>(k) * dz);
           const double gamma = std::abs(k == 0 ? 2 * next[0] : next[k] - next[k - 1]) / dz;
           const double a = d * std::sqrt(rho_s / p);
           std::visit(
@@ -106,7 +107,7 @@ std::vector<std::vector<double>> transient_flow(const InclinedPlane& plane, cons
           lower[k] = k == 0 ? 0 : -below;
           upper[k] = -above;
           diagonal[k] = 1 + below + above;
-          right[k] = u[k] + dt * 9.81 * std::sin(theta);
+          right[k] = u[k] + dt * earth_gravity * std::sin(theta);
         }
         for (std::size_t k = 1; k < n; ++k) {
           const double ratio = lower[k] / diagonal[k - 1];

@@ -44,6 +44,7 @@ Bed settle_bed(const BedRecipe& recipe);
 // The rough base: grains with centres in z in [9.3, 11], shifted down by 11 (Weinhart et al. 2012, section 5).
 // Still in units of the base's own diameter; the highest centres lie just below z = 0.
 std::vector<Vec3> cut_base(const Bed& bed);
+inline constexpr double settled_solid_fraction = 0.58;  // of a bed at rest, about
 inline constexpr double base_bed_thickness = 12;
 
 }  // namespace bagnold::scenario
