@@ -163,7 +163,7 @@ void change_densities(State& state, Work& w, const Model& model) {
   }
 }
 
-// rho -> pressure -> viscosity -> pressure force -> viscous force (at v(n+1) or v(n)) -> x
+// rho -> pressure -> viscosity (implicit: or that of the velocity expected) -> pressure force -> viscous force (at v(n+1) or v(n)) -> x
 void sequential_step(State& state, Work& w, const Model& model, double travel) {
   Particles& p = state.particles;
   const double dt = state.dt;
@@ -173,6 +173,7 @@ void sequential_step(State& state, Work& w, const Model& model, double travel) {
   change_densities(state, w, model);
   state.max_kinematic_viscosity = constitutive(w, p, model);
   update_volumes(w, p);
+  if (corrected && model.stepping == Stepping::implicit) predict_viscosity(w, state, model, dt);
   if (corrected)
     corrected_pressure_and_coefficients(w, p, model);
   else
@@ -214,8 +215,6 @@ void check(const Model& model) {
                           "shifting and volume correction need implicit or explicit_euler stepping");
   if (model.stepping != Stepping::minatti2015 && model.numerics.artificial_viscosity > 0)
     throw UnphysicalError("numerics.artificial_viscosity", "needs minatti2015 stepping");
-  if (model.numerics.viscosity_rounds > 0 && !(model.corrected() && model.stepping == Stepping::implicit))
-    throw UnphysicalError("numerics.viscosity_rounds", "need the variational operator and implicit stepping");
   for (std::size_t d = 0; d < 3; ++d)
     if (model.period[d] > 0 && model.period[d] < 2.2 * model.h())
       throw UnphysicalError("scenario.length",

@@ -118,20 +118,18 @@ void viscous_force(Work& w, const Particles& p, const Model& model, const Field&
     pair_viscous_force(w, p, model, v, force);
 }
 
+void predict_viscosity(Work& w, const State& state, const Model& model, double dt) {
+  const Particles& p = state.particles;
+  Field& v = w.cg_z;
+  parallel_for(p.size(), [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim); ++d) v[d][i] = p.v[d][i] + dt * p.rate[d][i];
+  });
+  lower_viscosity(w, p, model, v);
+}
+
 int solve_viscous(Work& w, State& state, const Model& model, double dt) {
-  Particles& p = state.particles;
-  int iterations = 0;
-  for (std::int64_t round = 0;; ++round) {
-    iterations += model.dim == 2 ? solve<2>(w, state, model, dt) : solve<3>(w, state, model, dt);
-    if (round == model.numerics.viscosity_rounds || reweigh_viscosity(w, p, model) < model.numerics.viscosity_tolerance)
-      return iterations;
-    for (std::size_t d = 0; d < static_cast<std::size_t>(model.dim);
-         ++d)  // back to v(n); the guess becomes what was found
-      parallel_for(p.size(), [&](std::int64_t k) {
-        const auto i = static_cast<std::size_t>(k);
-        p.v[d][i] -= dt * p.rate[d][i];
-      });
-  }
+  return model.dim == 2 ? solve<2>(w, state, model, dt) : solve<3>(w, state, model, dt);
 }
 
 }  // namespace bagnold::sph

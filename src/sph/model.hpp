@@ -37,8 +37,6 @@ struct Numerics {
   double base_friction = 0;         // Coulomb friction of particles the floor stops, over mu(i)
   double cg_tolerance = 1e-3;       // what is left of the momentum balance, rms, over g
   std::int64_t cg_max_iterations = 5000;
-  std::int64_t viscosity_rounds = 0;  // implicit: times the viscosity is taken again from the velocity found
-  double viscosity_tolerance = 0.01;  // those end when the stress used is that close to the law
   static constexpr auto fields() {
     using S = Numerics;
     return std::tuple{
@@ -56,11 +54,7 @@ struct Numerics {
         field("base_friction", "", "1: particles the floor stops feel friction mu(i), 0: they slide", &S::base_friction,
               closed(0, 1)),
         field("cg_tolerance", "", "implicit: rms acceleration left unbalanced, over g", &S::cg_tolerance, open(0, 1)),
-        field("cg_max_iterations", "", "implicit: more is an error", &S::cg_max_iterations, at_least(1)),
-        field("viscosity_rounds", "", "implicit, variational: times at most that viscosity is taken again from v(n+1)",
-              &S::viscosity_rounds, at_least(0)),
-        field("viscosity_tolerance", "", "relative error of the stress at which those end", &S::viscosity_tolerance,
-              open(0, 1))};
+        field("cg_max_iterations", "", "implicit: more is an error", &S::cg_max_iterations, at_least(1))};
   }
 };
 

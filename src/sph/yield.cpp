@@ -1,33 +1,22 @@
 #include "sph/yield.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "core/parallel.hpp"
 #include "sph/forces.hpp"
 
 namespace bagnold::sph {
-namespace {
 
-struct Dissipation {
-  double change = 0, total = 0;
-  Dissipation& operator+=(const Dissipation& other) {
-    change += other.change, total += other.total;
-    return *this;
-  }
-};
-
-}  // namespace
-
-double reweigh_viscosity(Work& w, const Particles& p, const Model& model) {
-  corrected_shear_rate(w, p, model, p.v);
-  const Dissipation sum = std::visit(
+void lower_viscosity(Work& w, const Particles& p, const Model& model, const Field& v) {
+  corrected_shear_rate(w, p, model, v);
+  std::visit(
       [&](const auto& rheology, const auto& surface, const auto& regularisation) {
         const auto excess = rheology.excess();
-        const double bulk = std::visit([](const auto& v) { return v.bulk; }, model.viscous);
+        const double bulk = std::visit([](const auto& viscous) { return viscous.bulk; }, model.viscous);
         const double mu_s = rheology.static_friction(), d0 = model.material.grain_diameter;
         const auto shape = surface.shape(mu_s);
-        return parallel_sum<Dissipation>(p.size(), [&](std::int64_t k) {
+        parallel_for(p.size(), [&](std::int64_t k) {
           const auto i = static_cast<std::size_t>(k);
           // eta0 = p a (mu - mu_s)/i with a = i/gamma, finite at rest and at p = 0 (eq. 47)
           const double gamma = w.shear_rate[i],
@@ -36,15 +25,12 @@ double reweigh_viscosity(Work& w, const Particles& p, const Model& model) {
                        eta0 = w.pressure[i] * a * excess(gamma * a);
           double eta = regularisation.viscosity(mu_s * w.pressure[i], eta0, gamma);
           if constexpr (!decltype(shape)::circular) eta *= shape(w.lode[i]);
-          const double dissipation = gamma * gamma * w.volume[i], change = eta - w.viscosity[i];
+          const double change = std::min(eta - w.viscosity[i], 0.0);
           w.bulk[i] += bulk * change;
-          w.viscosity[i] = eta;
-          return Dissipation{std::abs(change) * dissipation, eta * dissipation};
+          w.viscosity[i] += change;
         });
       },
       model.material.rheology, model.yield_surface(), model.material.regularisation);
-  corrected_pressure_and_coefficients(w, p, model);
-  return sum.total > 0 ? sum.change / sum.total : 0;
 }
 
 }  // namespace bagnold::sph

@@ -69,7 +69,6 @@ TEST(Conservation, VariationalStepsKeepMomentumAndAngularMomentumToRoundOff) {
       m.stepping = stepping;
       m.numerics.density_diffusion = 0.03;
       m.numerics.volume_correction = 1;
-      m.numerics.viscosity_rounds = stepping == Stepping::implicit ? 2 : 0;
       Simulation r = flying_block(m, dim == 2 ? 10 : 6);
       const auto P = momentum(r.state, r.model), L = angular_momentum(r.state, dim);
       const double scale = sum_of_magnitudes(r.state, dim), size = 0.015;

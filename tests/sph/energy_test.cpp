@@ -15,11 +15,9 @@ struct Ledgered {
 std::vector<Ledgered> columns() {
   Model full = improved(Model{});
   full.material.regularisation = laws::regularisation::Minatti2015{795, 1e3};
-  full.numerics.viscosity_rounds = 4;
   Model euler = full;
   euler.stepping = Stepping::explicit_euler;
   euler.material.regularisation = laws::regularisation::Minatti2015{795, 1.2};
-  euler.numerics.viscosity_rounds = 0;
   Model printed = Model{};
   printed.numerics.artificial_viscosity = 0.1;
   Model stepped = Model{};

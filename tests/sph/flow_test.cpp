@@ -64,7 +64,6 @@ TEST(Rest, HeapBelowTheFrictionAngleHolds) {
     Model m = improved(Model{});
     m.material.eos = laws::eos::CompressibleGrains{2600, 7.5e-6};
     m.material.regularisation = laws::regularisation::Minatti2015{795, stiff ? 1e4 : 1.2};
-    m.numerics.viscosity_rounds = 4;
     m.numerics.cg_tolerance = 1e-4;
     Simulation r =
         start(scenario::ContinuumColumn{.radius = 0.075, .height = height, .spacing = 2.5e-3, .slope_deg = 22},
@@ -78,13 +77,12 @@ TEST(Rest, HeapBelowTheFrictionAngleHolds) {
   }
 }
 
-// Frozen viscosity would hold a stiff column for hundreds of steps; bulk viscosity in proportion to shear viscosity would
+// The viscosity of v(n) would hold a stiff column for hundreds of steps; bulk viscosity in proportion to shear viscosity would
 // glue it for ever.
 TEST(Flow, StiffColumnYieldsAtOnce) {
   Model m = improved(Model{});
   m.material.eos = laws::eos::CompressibleGrains{2600, 7.5e-6};
   m.material.regularisation = laws::regularisation::Minatti2015{795, 1e3};
-  m.numerics.viscosity_rounds = 4;
   Simulation r = start(small_column, scenario::ColumnGeometry::axisymmetric, m);
   advance(r, 0.06);  // the time to fall half its height is 0.055 s
   refresh(r.state, r.work, r.model);

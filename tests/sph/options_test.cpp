@@ -192,22 +192,18 @@ TEST(Options, BaseFrictionAloneStopsADetachedParticle) {
   }
 }
 
-// Frozen viscosity holds stiff material back at first, the less the shorter the step.
-TEST(Options, ViscosityRoundsAloneLetStiffMaterialYield) {
-  const auto energy = [](std::int64_t rounds, double cfl) {
+// The viscosity of v(n) holds stiff material back at first, by 5 % here; that of the velocity expected, where lower, lets it yield in time.
+TEST(Options, StiffMaterialYieldsAlikeWhateverTheStep) {
+  const auto energy = [](double cfl) {
     Model m = improved(Model{});
     m.material.eos = laws::eos::CompressibleGrains{2600, 7.5e-6};
     m.material.regularisation = laws::regularisation::Minatti2015{795, 1e6};
-    m.numerics.viscosity_rounds = rounds;
     m.numerics.cfl = cfl;
     Simulation r = start(small_column, scenario::ColumnGeometry::axisymmetric, m);
     advance(r, 0.01);
     return kinetic_energy(r.state, r.model);
   };
-  const double frozen = energy(0, 0.4), taken_again = energy(4, 0.4);
-  EXPECT_LT(frozen, 0.95 * taken_again);
-  // one from below, one from above: a quarter of the step halves the gap at least
-  EXPECT_LT(energy(4, 0.1) - energy(0, 0.1), 0.5 * (taken_again - frozen));
+  EXPECT_NEAR(energy(0.4) / energy(0.05), 1, 0.025);
 }
 
 // A slice in r and z and the whole cylinder are the same flow.

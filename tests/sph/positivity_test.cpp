@@ -182,7 +182,6 @@ TEST(Floor, LoneParticleThatFallsIsStoppedToo) {
   for (const int dim : {2, 3}) {
     Model m = improved(Model{});
     m.material.regularisation = laws::regularisation::Minatti2015{795, 1e3};
-    m.numerics.viscosity_rounds = 4;
     Simulation r{m, {}, {}};
     set_geometry(small_column, dim == 2 ? scenario::ColumnGeometry::planar : scenario::ColumnGeometry::cylinder,
                  r.model);

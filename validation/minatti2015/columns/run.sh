@@ -54,7 +54,7 @@ options() {
     literal-planar-* | stepped-planar-*) # as printed; `stepped`: the same equations stepped implicitly
       echo "--set scenario.geometry=planar --set numerics.operator=minatti2015
             --set numerics.shifting=0 --set numerics.volume_correction=0 --set numerics.density_diffusion=0
-            --set numerics.base_friction=0 --set numerics.viscosity_rounds=0
+            --set numerics.base_friction=0
             --set material.compressibility=${printed_kt[row]} --set material.m0=${printed_m0[row]}"
       case $1 in
         literal-*) echo "--set numerics.stepping=minatti2015 --set numerics.cfl=0.5" ;;
