@@ -192,7 +192,7 @@ TEST(Options, BaseFrictionAloneStopsADetachedParticle) {
   }
 }
 
-// The viscosity of v(n) holds stiff material back at first, by 5 % here; that of the velocity expected, where lower, lets it yield in time.
+// The viscosity of v(n) holds stiff material back at first, by 8 % here; that of the velocity expected, where lower, lets it yield in time.
 TEST(Options, StiffMaterialYieldsAlikeWhateverTheStep) {
   const auto energy = [](double cfl) {
     Model m = improved(Model{});
@@ -203,7 +203,7 @@ TEST(Options, StiffMaterialYieldsAlikeWhateverTheStep) {
     advance(r, 0.01);
     return kinetic_energy(r.state, r.model);
   };
-  EXPECT_NEAR(energy(0.4) / energy(0.05), 1, 0.025);
+  EXPECT_NEAR(energy(0.8) / energy(0.05), 1, 0.03);
 }
 
 // A slice in r and z and the whole cylinder are the same flow.
