@@ -44,8 +44,8 @@ double potential(const Case& c, const Field& v, bool law_only = false) {
       for (std::size_t k = 0; k < 9; ++k) inertia[k] = (k % 4 == 0 ? M[0] + M[4] + M[8] : 0) - M[k];
       const Matrix<3> K = inverse(inertia);
       const std::array<double, 3> moment{S[7] - S[5], S[2] - S[6], S[3] - S[1]};
-      const auto rate = [&](std::size_t a) {
-        return K[3 * a] * moment[0] + K[3 * a + 1] * moment[1] + K[3 * a + 2] * moment[2];
+      const auto rate = [&](std::size_t k) {
+        return K[3 * k] * moment[0] + K[3 * k + 1] * moment[1] + K[3 * k + 2] * moment[2];
       };
       G = {0, -rate(2), rate(1), rate(2), 0, -rate(0), -rate(1), rate(0), 0};
     }
