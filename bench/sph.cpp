@@ -144,7 +144,7 @@ Simulation row3(Stepping stepping, double disorder, std::uint64_t seed) {
   Simulation s;
   s.model.viscous = laws::viscous::Variational{.bulk = 2};
   s.model.stepping = stepping;
-  s.model.numerics = {.cfl = 0.2,
+  s.model.numerics = {.cfl = 0.4,  // explicit: 0.04 rho h^2/eta
                       .shifting = 10,
                       .volume_correction = 1,
                       .density_diffusion = 0.03,
