@@ -238,7 +238,8 @@ class SphModel final : public Model {
         {"smoothing length", fmt::format("{:.4g} m", m.h()), "h"},
         {"sound speed", fmt::format("{:.4g} m/s", m.sound_speed()), "c = 1/sqrt(Kt phi_max rho_s0)"},
         {"Mach number",
-         fmt::format("{:.3g}", std::sqrt(earth_gravity * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
+         fmt::format("{:.3g}",
+                     std::sqrt(earth_gravity * (on_plane() ? in_.plane.height : in_.column.height)) / m.sound_speed()),
          "sqrt(g H)/c; 0.1 or less keeps compression small"},
         {"largest viscosity over density", fmt::format("{:.4g} m^2/s", state_.max_kinematic_viscosity), "at the start"},
         {"largest step", fmt::format("{:.3g} s", step_limit(state_, m)), "eq. 39; sound only when implicit"}};

@@ -69,8 +69,8 @@ PlaneFlow steady_flow(const InclinedPlane& plane, const sph::Model& model) {
         flow.phi = dilatancy.phi(flow.i);
       },
       model.material.rheology, model.material.dilatancy);
-  flow.u_surface = 2 * flow.i / (3 * model.material.grain_diameter) * std::sqrt(flow.phi * earth_gravity * std::cos(theta)) *
-                   std::pow(plane.height, 1.5);
+  flow.u_surface = 2 * flow.i / (3 * model.material.grain_diameter) *
+                   std::sqrt(flow.phi * earth_gravity * std::cos(theta)) * std::pow(plane.height, 1.5);
   return flow;
 }
 
