@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 
 #include "core/error.hpp"
 #include "io/hdf5.hpp"
@@ -45,7 +44,7 @@ scenario::Bed stored_bed(const scenario::BedRecipe& recipe) {
     }
   }
   fmt::print(stderr, "note: settling a bed of {:.0f} grains to cut from{}\n",
-             recipe.length * recipe.width * recipe.thickness * scenario::settled_solid_fraction * 6 / std::numbers::pi,
+             recipe.length * recipe.width * scenario::filling_height(recipe),
              folder.empty() ? "" : ", kept in " + folder.string() + " for other runs");
   scenario::Bed bed = scenario::settle_bed(recipe);
   if (folder.empty() || !(fs::create_directories(folder, failed), fs::is_directory(folder, failed))) return bed;

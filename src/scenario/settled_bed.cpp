@@ -12,12 +12,14 @@
 
 namespace bagnold::scenario {
 
+// Grains at rest fill about 0.58 of the space, a cubic lattice of one grain per d^3 pi/6 of it.
+double filling_height(const BedRecipe& recipe) { return recipe.thickness * 0.58 * 6 / std::numbers::pi; }
+
 Bed settle_bed(const BedRecipe& recipe) {
   const Chute box{.angle_deg = 0,
                   .length = recipe.length,
                   .width = recipe.width,
-                  // A cubic lattice of one grain per d^3 fills pi/6 of the space.
-                  .fill_height = recipe.thickness * settled_solid_fraction * 6 / std::numbers::pi,
+                  .fill_height = filling_height(recipe),
                   .base_size_ratio = 0};
   const GrainMaterial material{.size_spread = recipe.size_spread};
   dem::DemState state = make_chute(box, material, {}, static_cast<std::uint64_t>(recipe.seed));

@@ -38,13 +38,15 @@ struct Bed {
   std::vector<double> diameter;
 };
 
+// Height [d] of the loose filling, one grain per d^3, that settles to the thickness asked for.
+double filling_height(const BedRecipe& recipe);
+
 // At rest means E_kin < 1e-5 E_ela (Weinhart et al. 2012, section 6), or after a long time E_kin < 1e-6 m g d a grain. Throws NumericalError if the bed does not settle.
 Bed settle_bed(const BedRecipe& recipe);
 
 // The rough base: grains with centres in z in [9.3, 11], shifted down by 11 (Weinhart et al. 2012, section 5).
 // Still in units of the base's own diameter; the highest centres lie just below z = 0.
 std::vector<Vec3> cut_base(const Bed& bed);
-inline constexpr double settled_solid_fraction = 0.58;  // of a bed at rest, about
 inline constexpr double base_bed_thickness = 12;
 
 }  // namespace bagnold::scenario

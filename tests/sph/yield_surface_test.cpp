@@ -49,7 +49,8 @@ TEST(YieldSurface, IsOneInPlaneStrainStrongInCompressionAndConvex) {
       const auto shape = law.shape(mu);
       EXPECT_NEAR(shape(0.0), 1, 1e-15);
       EXPECT_GE(shape(1.0), 1);
-      EXPECT_LE(shape(-1.0), shape(1.0) * (1 + 1e-15));
+      // The hexagon is sharp at both ends; every other curve is weakest in extension.
+      EXPECT_LE(shape(-1.0), law.name == laws::yield_surface::MohrCoulomb::name ? shape(1.0) * (1 + 1e-15) : 1);
       // Of three neighbouring points the middle one lies on or outside the chord.
       constexpr double step = M_PI / 180;
       for (double theta = 0; theta < M_PI; theta += step) {
