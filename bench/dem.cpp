@@ -55,17 +55,7 @@ void contact_kernel(benchmark::State& bench) {
   fast::Engine engine = loaded(s);
   double pairs = 0;
   for (const fast::Section& section : engine.sections) pairs += static_cast<double>(section.inner.count);
-  with_laws(engine.laws, [&](const auto& tables) {
-    using Kernel = fast::Kernel<std::decay_t<decltype(tables)>, true, true>;
-    const fast::KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
-    for (auto _ : bench)
-      for (fast::Section& section : engine.sections)
-        benchmark::DoNotOptimize(
-            Kernel::act(engine.rows,
-                        fast::Batches{section.inner.i.data(), section.inner.j.data(), section.kind.data(),
-                                      section.history.data(), section.inner.count},
-                        tables, input));
-  });
+  for (auto _ : bench) fast::add_forces(engine);
   bench.counters["pairs/s"] = Counter(pairs, Counter::kIsIterationInvariantRate);
   bench.counters["pairs/contact"] = pairs / touching;
 }

@@ -8,9 +8,6 @@ target_compile_options(bagnold_options INTERFACE -Wall -Wextra -Wshadow -Wno-mis
   -Wno-psabi)  # vector types are never passed between objects built with different flags
 # g++ 12 sees an overflow in fmt 9 that is not there, as soon as native instructions are on.
 target_compile_options(bagnold_options INTERFACE -Wno-stringop-overflow)
-if(BAGNOLD_NATIVE)
-  target_compile_options(bagnold_options INTERFACE -march=native)
-endif()
 if(CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_options(bagnold_options INTERFACE -ffp-contract=off)
 endif()

@@ -1,6 +1,6 @@
 # What a result must say about the program that made it. The commit is asked for at every build: asked at
 # configuration, it would go stale with the next commit.
-set(BAGNOLD_COMPILER "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}, native=${BAGNOLD_NATIVE}")
+set(BAGNOLD_COMPILER "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}")
 set(BAGNOLD_GENERATED ${CMAKE_BINARY_DIR}/generated)
 add_custom_target(bagnold_git_hash BYPRODUCTS ${BAGNOLD_GENERATED}/git_hash.hpp
   COMMAND ${CMAKE_COMMAND} -D SOURCE_DIR=${CMAKE_SOURCE_DIR} -D OUTPUT=${BAGNOLD_GENERATED}/git_hash.hpp

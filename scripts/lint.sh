@@ -17,6 +17,6 @@ if [ -z "$files" ]; then
   exit 0
 fi
 # Its own build directory: g++'s precompiled headers and -march flags are not for clang.
-cmake -S . -B build/lint -G Ninja -DCMAKE_BUILD_TYPE=Release -DBAGNOLD_NATIVE=OFF -DBAGNOLD_TESTS=OFF >/dev/null
+cmake -S . -B build/lint -G Ninja -DCMAKE_BUILD_TYPE=Release -DBAGNOLD_TESTS=OFF >/dev/null
 cmake --build build/lint --target bagnold_git_hash >/dev/null
 printf '%s\n' $files | xargs -n 1 -P "$(nproc)" clang-tidy -p build/lint --quiet

@@ -6,13 +6,20 @@
 
 #include "app/verbs.hpp"
 #include "core/error.hpp"
+#include "core/variant.hpp"
 #include "core/version.hpp"
 
 namespace bagnold::app {
 
 int run(int argc, char** argv) {
   CLI::App cli{"bagnold: granular flow from grains to avalanches"};
-  cli.set_version_flag("--version", fmt::format("bagnold {} ({}; {})", version(), git_hash(), compiler()));
+  cli.set_version_flag("--version", [] {
+    std::string executable_here;
+    for (const Variant v : built_variants())
+      if (executable(v)) executable_here += fmt::format("{}{}", executable_here.empty() ? "" : ", ", name(v));
+    return fmt::format("bagnold {} ({}; {}; SIMD: {}, of {})", version(), git_hash(), compiler(), name(variant()),
+                       executable_here);
+  });
   cli.require_subcommand(1);
   int exit_code = 0;
   add_run(cli, exit_code);
@@ -22,6 +29,7 @@ int run(int argc, char** argv) {
   add_cg(cli, exit_code);
   add_report(cli, exit_code);
   try {
+    use_variant_of_environment();
     cli.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version
     return cli.exit(wanted);

@@ -4,3 +4,4 @@ target_compile_options(bagnold_dem PRIVATE -fno-strict-aliasing)
 # only model of 512-bit registers is that of this processor.
 set_source_files_properties(src/dem/fast/engine.cpp src/dem/fast/lists.cpp PROPERTIES
   COMPILE_OPTIONS "-fschedule-insns;-fsched-pressure;-mtune=skylake-avx512")
+bagnold_hot(dem fast/engine.cpp fast/exchange.cpp fast/history.cpp fast/lists.cpp fast/outer_list.cpp fast/rebuild.cpp)

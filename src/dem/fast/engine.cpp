@@ -266,13 +266,17 @@ void with_engine(DemState& state, const ContactLaws& laws, Work&& work) {
 
 }  // namespace
 
+void add_forces(Engine& engine) {
+  with_kernel(engine, [&]<class K>(const auto& tables) {
+    for (std::size_t a = 0; a < engine.sections.size(); ++a) act<K>(engine, tables, a, engine.scratch[0]);
+  });
+}
+
 void prepare(DemState& state, const ContactLaws& laws) {
   state.engine = {};
   with_engine(state, laws, [&](Engine& engine) {
     engine.dt = 0;  // springs stay 0
-    with_kernel(engine, [&]<class K>(const auto& tables) {
-      for (std::size_t a = 0; a < engine.sections.size(); ++a) act<K>(engine, tables, a, engine.scratch[0]);
-    });
+    add_forces(engine);
     engine.dt = state.dt;
     state.rebuilds = 1;
     check(engine, state);

@@ -110,6 +110,9 @@ void prepare(DemState& state, const ContactLaws& laws);
 // As dem::advance, for a state it supports.
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
 
+// Adds the forces of all pairs of the inner lists to the rows once; springs move on by engine.dt.
+void add_forces(Engine& engine);
+
 // Makes the outer lists from the places where grains start. `grid`: its layers are the slabs.
 void list_outer(Engine& engine, const Grains& grains, const neighbours::CellGrid& grid, const std::vector<Vec3>& start);
 

@@ -1,0 +1,1 @@
+bagnold_hot(cg deposit.cpp deposit_rows.cpp moments.cpp)
