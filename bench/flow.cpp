@@ -17,6 +17,7 @@
 #include "chute_flow.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
+#include "core/variant.hpp"
 #include "core/version.hpp"
 #include "lammps.hpp"
 #include "steady_flow.hpp"
@@ -264,12 +265,12 @@ int main(int argc, char** argv) {
 
   std::ofstream csv("performance.csv", std::ios::app);
   if (csv.tellp() == 0)
-    csv << "host,commit,flow,grains,contacts_per_grain,fast_grain_steps_per_s,plain,lammps_granular,lammps_hooke,"
+    csv << "host,commit,variant,flow,grains,contacts_per_grain,fast_grain_steps_per_s,plain,lammps_granular,lammps_hooke,"
            "lammps_skin,ratio,cycles_per_contact,steps_per_rebuild,rebuild_part,speed_up_2_threads_4k,"
            "speed_up_2_threads_32k,bytes_per_grain\n";
   for (const Row& r : rows)
     csv << fmt::format(
-        "{},{},{},{},{:.3g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.4g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.0f}\n", host(),
-        git_hash(), r.flow, r.grains, r.contacts, r.fast, r.plain, r.granular, r.hooke, r.skin, r.ratio,
+        "{},{},{},{},{},{:.3g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.4g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.0f}\n", host(),
+        git_hash(), name(variant()), r.flow, r.grains, r.contacts, r.fast, r.plain, r.granular, r.hooke, r.skin, r.ratio,
         hz / r.fast / r.contacts, r.steps_per_rebuild, r.rebuild_part, faster[0], faster[1], bytes);
 }
