@@ -1,6 +1,4 @@
-# The fast engine moves rows of doubles as registers; no file of it may be compiled as if that never happened.
-target_compile_options(bagnold_dem PRIVATE -fno-strict-aliasing)
-# Its kernel lays three independent batches of pairs before the scheduler, which g++ leaves switched off for x86, and whose
-# only model of 512-bit registers is that of this processor.
+bagnold_packs_stay_whole(bagnold_dem)
+# The kernel lays three independent batches of pairs before the scheduler.
 set_source_files_properties(src/dem/fast/engine.cpp src/dem/fast/lists.cpp PROPERTIES
-  COMPILE_OPTIONS "-fschedule-insns;-fsched-pressure;-mtune=skylake-avx512")
+  COMPILE_OPTIONS "${BAGNOLD_ABREAST_${BAGNOLD_SIMD}}")

@@ -1,0 +1,1 @@
+bagnold_packs_stay_whole(bagnold_cg)
