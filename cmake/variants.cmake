@@ -26,12 +26,16 @@ list(JOIN built "," built)
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/core/variant.cpp PROPERTIES
   COMPILE_DEFINITIONS "BAGNOLD_VARIANTS_BUILT=${built}")
 
+# A pack that is taken apart into scalars is many times slower, and nothing but this warning says so.
+set(whole_packs -Werror=vector-operation-performance)
+
 function(bagnold_hot module)
   set(target bagnold_${module})
   list(TRANSFORM ARGN PREPEND ${CMAKE_SOURCE_DIR}/src/${module}/ OUTPUT_VARIABLE files)
   list(LENGTH BAGNOLD_VARIANTS count)
   if(count EQUAL 1)
-    set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS ${BAGNOLD_FLAGS_${BAGNOLD_VARIANTS}})
+    set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS ${BAGNOLD_FLAGS_${BAGNOLD_VARIANTS}} ${whole_packs})
+    set_target_properties(${target} PROPERTIES BAGNOLD_VARIANT ${BAGNOLD_VARIANTS})
     return()
   endif()
   get_target_property(sources ${target} SOURCES)
@@ -45,7 +49,9 @@ function(bagnold_hot module)
   foreach(variant IN LISTS BAGNOLD_VARIANTS)
     set(library ${target}_${variant})
     add_library(${library} OBJECT ${files})
-    target_compile_options(${library} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> ${BAGNOLD_FLAGS_${variant}})
+    target_compile_options(${library} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> ${BAGNOLD_FLAGS_${variant}}
+                           ${whole_packs})
+    set_target_properties(${library} PROPERTIES BAGNOLD_VARIANT ${variant})
     target_include_directories(${library} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
     target_compile_definitions(${library} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
     list(APPEND merged ${folder}/${variant}.o)
@@ -61,4 +67,14 @@ function(bagnold_hot module)
   set_source_files_properties(${merged} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
   set_source_files_properties(${folder}/dispatch.s PROPERTIES LANGUAGE ASM GENERATED ON)
   target_sources(${target} PRIVATE ${merged} ${folder}/dispatch.s)
+endfunction()
+
+# bagnold_abreast(module file...): these lay independent chains of operations side by side. g++ leaves its scheduler
+# switched off for x86; its only model of 512-bit registers is that of skylake-avx512.
+function(bagnold_abreast module)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_SOURCE_DIR}/src/${module}/ OUTPUT_VARIABLE files)
+  set(variant "$<TARGET_PROPERTY:BAGNOLD_VARIANT>")
+  set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS
+    "$<$<NOT:$<STREQUAL:${variant},baseline>>:-fschedule-insns;-fsched-pressure>"
+    "$<$<STREQUAL:${variant},avx512>:-mtune=skylake-avx512>")
 endfunction()

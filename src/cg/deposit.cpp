@@ -22,8 +22,8 @@ void carry(double m, double I, double d, const Vec3& v, const Vec3& omega, Plain
   alignas(64) std::array<double, kCarried> q;
   constexpr std::array<double, 6> no_contacts{};
   carried_by_grain(q.data(), m, I, d, v, omega, no_contacts.data());
-  a = lanes(q.data());
-  b = lanes(q.data() + 8);
+  a = Lanes::load(q.data());
+  b = Lanes::load(q.data() + 8);
   memo.volume = q[kVolume];
 }
 
@@ -81,19 +81,19 @@ void share_contact(ProfileMoments& p, const Grains& grains, std::int64_t flowing
                    double least_height) {
   const Vec3 &r = c.branch, &f = c.force, &n = c.normal;
   const dem::ContactForce contact{c.i, c.j, r, n, f, c.overlap};
-  Lanes fabric{n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z, 0, 0};
+  Lanes fabric(n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z, 0, 0);
   if (touches_base(flowing, c)) {
-    share(w, static_cast<std::size_t>(c.i), fabric, Lanes{});
+    share(w, static_cast<std::size_t>(c.i), fabric, 0.0);
     return add_base_contact(p, grains.z(static_cast<std::size_t>(c.i)), grains.diameter(static_cast<std::size_t>(c.i)),
                             contact);
   }
   const bool is_level = std::abs(r.z) < least_height;
   if (is_level) add_level_contact(p, grains.z(static_cast<std::size_t>(c.i)), contact);
   const double x = is_level ? 0 : r.x / r.z, y = is_level ? 0 : r.y / r.z;
-  const Lanes stress{f.x * y, f.x, f.y * x, f.y * y, f.y, f.z * x, f.z * y, f.z};
-  fabric[7] = f.x * x;
+  const Lanes stress(f.x * y, f.x, f.y * x, f.y * y, f.y, f.z * x, f.z * y, f.z);
+  fabric.set(7, f.x * x);
   share(w, static_cast<std::size_t>(c.i), fabric, stress);
-  fabric[7] = -fabric[7];
+  fabric.set(7, -f.x * x);
   share(w, static_cast<std::size_t>(c.j), fabric, -stress);
 }
 

@@ -28,7 +28,7 @@ class RowGrains {
         velocity_(engine.rows.velocity.data()),
         force_(engine.rows.force.data()),
         half_(engine.step == 0 ? 0 : 0.5 * engine.dt),
-        half_gravity_{half_ * engine.gravity.x, half_ * engine.gravity.y, half_ * engine.gravity.z} {
+        half_gravity_(half_ * engine.gravity.x, half_ * engine.gravity.y, half_ * engine.gravity.z, 0, 0, 0, 0, 0) {
     if (!alike) return;
     const auto slab = std::find_if(engine.slabs.begin(), engine.slabs.end(),
                                    [](const dem::fast::Slab& s) { return s.begin < s.moving_end; });
@@ -48,19 +48,19 @@ class RowGrains {
     const double *v = velocity(k), *f = force(k);
     if constexpr (!alike)
       if (f[3] != memo.inverse_mass || f[7] != memo.inverse_inertia || v[3] != memo.radius) renew(memo, v, f);
-    const Lanes one = Lanes{} + 1;
+    const Lanes one = 1.0;
+    const Lanes now = (alike ? all_ : memo).half_step * Lanes::load(f) + (Lanes::load(v) + half_gravity_);
     // { v, 1, omega, 1 } at the time of the positions
-    const Lanes motion = __builtin_shufflevector(
-        (alike ? all_ : memo).half_step * lanes(f) + (lanes(v) + half_gravity_), one, 0, 1, 2, 8, 4, 5, 6, 8);
+    const Lanes motion(simd::shuffle<0, 1, 2, 8, 4, 5, 6, 8>(now.v, one.v));
     a = alike ? motion : memo.inertia * motion;
-    b = __builtin_shufflevector(motion, one, 0, 0, 0, 1, 1, 2, 8, 8) *
-        __builtin_shufflevector(a, alike ? one : memo.volumes, 0, 1, 2, 1, 2, 2, 8, 9);
+    b = Lanes(simd::shuffle<0, 0, 0, 1, 1, 2, 8, 8>(motion.v, one.v)) *
+        Lanes(simd::shuffle<0, 1, 2, 1, 2, 2, 8, 9>(a.v, (alike ? one : memo.volumes).v));
   }
 
   Scales scales() const {
     if (!alike) return {};
     const double m = all_.inertia[0], v = all_.volume;
-    return {all_.inertia, Lanes{m, m, m, m, m, m, all_.volumes[0], all_.volumes[1]}, Lanes{v, v, v, v, v, v, 0, 1}};
+    return {all_.inertia, Lanes(m, m, m, m, m, m, all_.volumes[0], all_.volumes[1]), Lanes(v, v, v, v, v, v, 0, 1)};
   }
 
  private:
@@ -73,9 +73,9 @@ class RowGrains {
     memo.inverse_inertia = f[7];
     memo.radius = v[3];
     memo.volume = std::numbers::pi / 6 * d * d * d;
-    memo.half_step = half_ * Lanes{f[3], f[3], f[3], 0, f[7], f[7], f[7], 0};
-    memo.inertia = Lanes{m, m, m, m, I, I, I, I};
-    memo.volumes = Lanes{memo.volume, memo.volume * d};
+    memo.half_step = half_ * Lanes(f[3], f[3], f[3], 0, f[7], f[7], f[7], 0);
+    memo.inertia = Lanes(m, m, m, m, I, I, I, I);
+    memo.volumes = Lanes(memo.volume, memo.volume * d, 0, 0, 0, 0, 0, 0);
   }
 
   const double *position_, *velocity_, *force_;
@@ -89,6 +89,14 @@ struct PackShares {
   Lanes low[8], high[8];  // by contact
 };
 
+// Rows to columns.
+[[gnu::always_inline]] inline void transpose(const Pack (&row)[8], Pack (&column)[8]) {
+  const Register in[8] = {row[0].v, row[1].v, row[2].v, row[3].v, row[4].v, row[5].v, row[6].v, row[7].v};
+  Register out[8];
+  simd::transpose8(in, out);
+  for (int k = 0; k < 8; ++k) column[k].v = out[k];
+}
+
 // Returns which of the contacts are nearly level; those give their grains f_a r_z/r_z only.
 [[gnu::always_inline]] inline std::uint32_t evaluate(const ContactPack& c, double least_height, PackShares& out) {
   const auto of = [](const ContactPack::Vector& v, std::size_t a) { return Pack::load(v[a].data()); };
@@ -99,9 +107,8 @@ struct PackShares {
   const Pack per_z = select(is_level, zero, Pack(1) / rz), x = rx * per_z, y = ry * per_z;
   const Pack low[8] = {nx * nx, nx * ny, nx * nz, ny * ny, ny * nz, nz * nz, zero, fx * x};
   const Pack high[8] = {fx * y, fx, fy * x, fy * y, fy, fz * x, fz * y, fz};
-  for (int k = 0; k < 8; ++k) out.low[k] = low[k].v, out.high[k] = high[k].v;
-  transpose(out.low);
-  transpose(out.high);
+  transpose(low, out.low);
+  transpose(high, out.high);
   return to_integer(is_level);
 }
 
@@ -124,7 +131,8 @@ void ask_for_shares(const ProfileScratch& w, const ContactPack& c) {
 
 // Gives the grains of eight contacts their shares; contacts with the base and those nearly level are put aside.
 void share_pack(const ContactPack& c, double least_height, std::vector<dem::ContactForce>& special, ProfileScratch& w) {
-  const Lanes opposite{1, 1, 1, 1, 1, 1, 1, -1};
+  const Lanes opposite(1, 1, 1, 1, 1, 1, 1, -1);
+  const Lanes none = 0.0;
   PackShares given;
   const std::uint32_t is_level = evaluate(c, least_height, given);
   for (std::uint32_t left = c.touching; left != 0; left &= left - 1) {
@@ -137,7 +145,7 @@ void share_pack(const ContactPack& c, double least_height, std::vector<dem::Cont
       if ((is_level >> k & 1) != 0) special.push_back(lane_of(c, k));
       continue;
     }
-    share(w, i_flows ? i : j, __builtin_shufflevector(given.low[k], Lanes{}, 0, 1, 2, 3, 4, 5, 6, 8), Lanes{});
+    share(w, i_flows ? i : j, Lanes(simd::shuffle<0, 1, 2, 3, 4, 5, 6, 8>(given.low[k].v, none.v)), none);
     dem::ContactForce contact = lane_of(c, k);
     if (!i_flows) contact = {contact.j, contact.i, -contact.branch, -contact.normal, -contact.force, contact.overlap};
     special.push_back(contact);

@@ -9,13 +9,11 @@
 
 #include "cg/moments.hpp"
 #include "core/parallel.hpp"
+#include "core/simd.hpp"
 
 namespace bagnold::cg {
 
-// Eight channels at once; the compiler maps it to the vectors of the machine.
-using Lanes = double __attribute__((vector_size(64), aligned(8), may_alias));
-inline Lanes& lanes(double* p) { return *reinterpret_cast<Lanes*>(p); }
-inline const Lanes& lanes(const double* p) { return *reinterpret_cast<const Lanes*>(p); }
+using Lanes = Pack;  // eight channels
 
 struct Place {
   std::int64_t bin;
@@ -119,37 +117,19 @@ inline void share(ProfileScratch& w, std::size_t grain, const Lanes& fabric, con
   double* sums = w.shares[grain].channel.data();
   const double known = w.touches[grain];  // 0 or 1: no branch that nobody can foresee
   w.touches[grain] = 1;
-  lanes(sums) = known * lanes(sums) + fabric;
-  lanes(sums + 8) = known * lanes(sums + 8) + stress;
-}
-
-// Rows to columns.
-[[gnu::always_inline]] inline void transpose(Lanes (&row)[8]) {
-  Lanes a[8], b[8];
-  for (std::size_t k = 0; k < 8; k += 2) {
-    a[k] = __builtin_shufflevector(row[k], row[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-    a[k + 1] = __builtin_shufflevector(row[k], row[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (std::size_t k = 0; k < 8; k += 4)
-    for (std::size_t l = 0; l < 2; ++l) {
-      b[k + l] = __builtin_shufflevector(a[k + l], a[k + l + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-      b[k + l + 2] = __builtin_shufflevector(a[k + l], a[k + l + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  for (std::size_t l = 0; l < 4; ++l) {
-    row[l] = __builtin_shufflevector(b[l], b[l + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    row[l + 4] = __builtin_shufflevector(b[l], b[l + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
+  (known * Lanes::load_unaligned(sums) + fabric).store_unaligned(sums);
+  (known * Lanes::load_unaligned(sums + 8) + stress).store_unaligned(sums + 8);
 }
 
 // Sum of each of eight registers.
-[[gnu::always_inline]] inline Lanes sums_of(Lanes (&row)[8]) {
-  transpose(row);
-  return ((row[0] + row[1]) + (row[2] + row[3])) + ((row[4] + row[5]) + (row[6] + row[7]));
+[[gnu::always_inline]] inline Lanes sums_of(const Lanes (&row)[8]) {
+  return Lanes(simd::halves(simd::lane_sums(row[0].v, row[1].v, row[2].v, row[3].v),
+                            simd::lane_sums(row[4].v, row[5].v, row[6].v, row[7].v)));
 }
 
 // What sums are multiplied by: channels [0, 16), and [16, 24), of contacts.
 struct Scales {
-  Lanes low{Lanes{} + 1}, high{Lanes{} + 1}, contacts{Lanes{} + 1};
+  Lanes low = 1.0, high = 1.0, contacts = 1.0;
 };
 
 // The grains of one bin, a few at a time: powers of their places first, then what they carry, then what the contacts of those
@@ -183,14 +163,14 @@ class BinDeposit {
         __builtin_prefetch(shares[sums].channel.data() + 8);
         return g;
       });
-      add_sums<false>(bin + kFabric, touched, scales.contacts, Lanes{} + 1, [&](std::size_t t, Lanes& a, Lanes& b) {
+      add_sums<false>(bin + kFabric, touched, scales.contacts, 1.0, [&](std::size_t t, Lanes& a, Lanes& b) {
         const double* share = shares[share_[t]].channel.data();
-        a = lanes(share);
+        a = Lanes::load_unaligned(share);
         if constexpr (!Grains::alike) {
           const double v = volume_[t];
-          a *= Lanes{v, v, v, v, v, v, 0, 1};
+          a *= Lanes(v, v, v, v, v, v, 0, 1);
         }
-        b = lanes(share + 8);
+        b = Lanes::load_unaligned(share + 8);
         return grain_[t];
       });
     }
@@ -203,15 +183,14 @@ class BinDeposit {
   void take_powers(double* bin, const double* place, std::size_t n) {
     constexpr std::size_t rows = (terms - 1 + 7) / 8 * 8;
     Lanes number[rows]{};  // [k - 1]: of power k
-    constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
     for (std::size_t g = 0; g < n; g += 8) {
-      Lanes p = lane < static_cast<double>(n - g) ? Lanes{} + 1 : Lanes{}, s;
-      std::memcpy(&s, place + g, sizeof s);  // readable beyond the last grain
-      lanes(&power_[0][g]) = p;
+      Lanes p = select(lanes_between(0, static_cast<int>(n - g)), Lanes(1.0), 0.0);
+      const Lanes s = Lanes::load_unaligned(place + g);  // readable beyond the last grain
+      p.store(&power_[0][g]);
 #pragma GCC unroll 16
       for (std::size_t k = 1; k < terms; ++k) {
         p *= s;
-        lanes(&power_[k][g]) = p;
+        p.store(&power_[k][g]);
         if constexpr (!Grains::alike) number[k - 1] += p;
       }
     }
@@ -221,7 +200,8 @@ class BinDeposit {
       Lanes eight[8];
       std::copy_n(number + k - 1, 8, eight);
       const Lanes sums = sums_of(eight);
-      for (std::size_t l = 0; l < 8 && k + l < terms; ++l) bin[(k + l) * flow_width + kNumber] += sums[l];
+      for (std::size_t l = 0; l < 8 && k + l < terms; ++l)
+        bin[(k + l) * flow_width + kNumber] += sums[static_cast<int>(l)];
     }
   }
 
@@ -242,9 +222,10 @@ class BinDeposit {
     }
 #pragma GCC unroll 16
     for (std::size_t k = 0; k < terms; ++k) {
-      lanes(bin + k * flow_width) += scale_low * low[k];
-      lanes(bin + k * flow_width + 8) += scale_high * high[k];
-      if constexpr (count) bin[k * flow_width + kNumber] += low[k][std::size_t{kMass}];
+      double* to = bin + k * flow_width;
+      (Lanes::load_unaligned(to) + scale_low * low[k]).store_unaligned(to);
+      (Lanes::load_unaligned(to + 8) + scale_high * high[k]).store_unaligned(to + 8);
+      if constexpr (count) to[kNumber] += low[k][static_cast<int>(kMass)];
     }
   }
 

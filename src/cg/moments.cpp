@@ -96,7 +96,7 @@ void add_expansions(const BinMoments& m, const Table& t, const NodeInBins& node,
   for (std::size_t q = 0; q < packs; ++q) {
     values[q] = Pack::load_unaligned(value + q * lanes);
     slopes[q] = Pack::load_unaligned(slope + q * lanes);
-    Pack beyond;
+    Pack beyond = 0.0;
     for (std::size_t c = 0; c < lanes; ++c) beyond.set(static_cast<int>(c), q * lanes + c < first_stress ? 1 : -1);
     is_stress[q] = beyond < Pack(0);
   }

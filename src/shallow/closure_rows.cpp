@@ -21,6 +21,7 @@ void closure_row(const PreparedClosure& p, int n, const double* D_row, const dou
   };
   alignas(64) Row safe, ratio;
   row.any_rest = false;
+  if (n <= 0) return;
   for (int k = 0; k < n; k += Pack::lanes) {
     const Pack D = Pack::load_unaligned(D_row + k), D_safe = max(D, least);
     const Mask wet = D > dry;

@@ -1,5 +1,7 @@
 #include "sph/constitutive.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "core/parallel.hpp"

@@ -19,30 +19,28 @@ namespace bagnold::dem::fast {
 
 namespace {
 
-using Half = double __attribute__((vector_size(32), may_alias));
-Half& half(double* p) { return *reinterpret_cast<Half*>(p); }
-
 // Kick and drift of the grains in rows [begin, end): v += kick (F/m + g), x += dt v. Forces start again at 0.
 // Returns a bound on their acceleration. Nothing overlaps: otherwise every grain would wait for the stores of the last.
 double move_rows(double* __restrict position, double* __restrict velocity, double* __restrict force, std::size_t begin,
                  std::size_t end, const Vec3& gravity, double kick, double dt) {
-  const Half g{gravity.x, gravity.y, gravity.z, 0}, kicks{kick, kick, kick, 0}, drift{dt, dt, dt, 0};
-  Half largest{};
+  using simd::Four, simd::load_four, simd::store, simd::three_and_one;
+  const Four g = simd::four(gravity.x, gravity.y, gravity.z, 0), kicks = simd::four(kick, kick, kick, 0),
+             drift = simd::four(dt, dt, dt, 0), zero = simd::four(0.0);
+  Four largest = zero;
   for (std::size_t k = begin; k < end; ++k) {
     double *x = position + position_doubles * k, *v = velocity + velocity_doubles * k, *f = force + force_doubles * k;
-    const Half push = half(f), turn = half(f + 4);
-    const Half acceleration = push * __builtin_shufflevector(push, push, 3, 3, 3, 3) + g;
-    const Half spin_up = turn * __builtin_shufflevector(turn, turn, 3, 3, 3, 3);
-    const Half moved = acceleration * kicks + half(v);
-    half(x) = moved * drift + half(x);
-    half(v) = moved;
-    half(v + 4) = spin_up * kicks + half(v + 4);
-    half(f) = __builtin_shufflevector(push, Half{}, 4, 4, 4, 3);  // the constants stay
-    half(f + 4) = __builtin_shufflevector(turn, Half{}, 4, 4, 4, 3);
-    const Half size = acceleration < 0.0 ? -acceleration : acceleration;
-    largest = size > largest ? size : largest;
+    const Four push = load_four(f), turn = load_four(f + 4);
+    const Four acceleration = push * simd::spread<3>(push) + g, spin_up = turn * simd::spread<3>(turn);
+    const Four moved = acceleration * kicks + load_four(v);
+    store(x, moved * drift + load_four(x));
+    store(v, moved);
+    store(v + 4, spin_up * kicks + load_four(v + 4));
+    store(f, three_and_one(zero, push));  // the constants stay
+    store(f + 4, three_and_one(zero, turn));
+    largest = simd::most(simd::magnitude(acceleration), largest);
   }
-  return std::sqrt(largest[0] * largest[0] + largest[1] * largest[1] + largest[2] * largest[2]);
+  const double x = simd::lane(largest, 0), y = simd::lane(largest, 1), z = simd::lane(largest, 2);
+  return std::sqrt(x * x + y * y + z * z);
 }
 
 // Copies the histories of `count` pairs, `numbers` each in groups of eight pairs: pair k from where place[key[k]] says, or

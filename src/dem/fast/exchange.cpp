@@ -136,19 +136,18 @@ void remember_origin(Engine& engine, const PairList& pairs) {
   }
 }
 
-// A number that tells the grains of one moment from those of any other. Eight words at a time, so that it takes one vector
-// multiplication for eight.
+// A number that tells the grains of one moment from those of any other. Eight words at a time, so that those the processor
+// can multiply at once need not wait for each other.
 std::uint64_t fingerprint(const Grains& g) {
   constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;
-  using Words = std::uint64_t __attribute__((vector_size(64)));
+  using Words = std::array<std::uint64_t, 8>;
   Words lanes{};
   const auto add = [&](const void* data, std::size_t bytes) {
     const auto* from = static_cast<const char*>(data);
     const auto mix = [&](std::size_t begin, std::size_t count) {
       Words words{};
       std::memcpy(&words, from + begin, count);
-      const Words mixed = lanes ^ words;
-      lanes = (mixed << 29 | mixed >> 35) * odd;
+      for (std::size_t k = 0; k < words.size(); ++k) lanes[k] = std::rotl(lanes[k] ^ words[k], 29) * odd;
     };
     std::size_t b = 0;
     for (; b + sizeof lanes <= bytes; b += sizeof lanes) mix(b, sizeof lanes);
