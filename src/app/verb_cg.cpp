@@ -9,11 +9,11 @@
 
 #include "app/cg_input.hpp"
 #include "app/profile_files.hpp"
+#include "app/use_threads.hpp"
 #include "app/verbs.hpp"
 #include "cg/fields.hpp"
 #include "cg/grid.hpp"
 #include "core/error.hpp"
-#include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "io/csv.hpp"
 #include "io/json.hpp"
@@ -150,7 +150,7 @@ void write_fields(Fields& f, const CgOptions& o) {
 }
 
 int coarse_grain(const CgOptions& o) {
-  set_threads(o.threads);
+  use_threads(o.threads);
   Profiles profiles;
   Fields fields;
   std::int64_t samples = 0;

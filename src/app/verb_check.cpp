@@ -5,16 +5,16 @@
 
 #include "app/driver.hpp"
 #include "app/model.hpp"
+#include "app/use_threads.hpp"
 #include "app/verbs.hpp"
 #include "config/case.hpp"
-#include "core/parallel.hpp"
 
 namespace bagnold::app {
 
 namespace {
 
 int check(const std::string& path, const std::vector<std::string>& set, bool resolved) {
-  set_threads(0);
+  use_threads(0);
   config::Case input = config::Case::from_file(path, set);
   const auto model = make_model(input);
   (void)input.root().child("output").read<OutputSettings>();

@@ -6,10 +6,10 @@
 
 #include "app/driver.hpp"
 #include "app/signals.hpp"
+#include "app/use_threads.hpp"
 #include "app/verbs.hpp"
 #include "config/case.hpp"
 #include "core/error.hpp"
-#include "core/parallel.hpp"
 #include "io/files.hpp"
 
 namespace bagnold::app {
@@ -67,7 +67,7 @@ RunContext read_context(config::Case& input, Model& model, const fs::path& direc
 }
 
 int run(const RunOptions& options) {
-  set_threads(options.threads);
+  use_threads(options.threads);
   config::Case input = config::Case::from_file(options.input, options.set);
   const fs::path directory =
       options.directory.empty() ? fs::path("out") / fs::path(options.input).stem() : fs::path(options.directory);
@@ -82,7 +82,7 @@ int run(const RunOptions& options) {
 }
 
 int resume(const RunOptions& options) {
-  set_threads(options.threads);
+  use_threads(options.threads);
   const fs::path directory = options.input;
   if (!fs::exists(directory / "case.toml"))
     throw InputError(fmt::format(
@@ -102,7 +102,8 @@ void add_run(CLI::App& cli, int& exit_code) {
   verb->add_option("CASE", options->input, "Case file (.toml)")->required();
   verb->add_option("-o,--output", options->directory, "Run directory (default: out/<name of the case>)");
   verb->add_option("--set", options->set, "Override a key: key.path=value (repeatable)")->allow_extra_args(false);
-  verb->add_option("--threads", options->threads, "Threads (default: OMP_NUM_THREADS, SLURM_CPUS_PER_TASK, all cores)")
+  verb->add_option("--threads", options->threads,
+                   "Threads (default: OMP_NUM_THREADS, SLURM_CPUS_PER_TASK, as many as allowed)")
       ->check(CLI::PositiveNumber);
   verb->add_flag("--overwrite", options->overwrite, "Replace the run that the directory holds");
   verb->add_flag("--quiet", options->quiet, "No progress");

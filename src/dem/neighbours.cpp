@@ -201,11 +201,14 @@ void rebuild_pairs(DemState& state) {
 void refresh_pairs(DemState& state) {
   const Grains& g = state.grains;
   const double limit = 0.25 * state.skin * state.skin;
-  bool stale = !state.pairs.origin.empty();
-#pragma omp parallel for schedule(static) reduction(|| : stale) if (worth_threads(g))
-  for (std::int64_t i = 0; i < g.flowing; ++i)  // written so that NaN counts as moved
-    stale = stale || !(norm2(g.x[at(i)] - state.pairs.reference[at(i)]) <= limit);
-  if (stale) rebuild_pairs(state);
+  const bool fresh =
+      state.pairs.origin.empty() && parallel_all(
+                                        g.flowing,
+                                        [&](std::int64_t i) {  // not so for NaN
+                                          return norm2(g.x[at(i)] - state.pairs.reference[at(i)]) <= limit;
+                                        },
+                                        worth_threads(g));
+  if (!fresh) rebuild_pairs(state);
 }
 
 }  // namespace bagnold::dem

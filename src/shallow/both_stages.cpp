@@ -1,8 +1,8 @@
 // Both Runge-Kutta stages, tile by tile. Stage 1 covers what stage 2 looks at, so that a tile needs nothing of its
 // neighbours but the state before the step, and what lies between the stages never leaves the cache.
 #include <algorithm>
-#include <memory>
 
+#include "core/parallel.hpp"
 #include "shallow/sweep.hpp"
 
 namespace bagnold::shallow {
@@ -67,17 +67,15 @@ StepResult run_step(Solver& s, const State& state, double dt) {
   results.assign(s.active.size(), {});
   s.wet_boxes.assign(s.boxes.size(), {});
   const bool worth_it = state.now.D.size() > parallel_threshold && tiles > 1;
-#pragma omp parallel if (worth_it)
-  {
-    static thread_local std::unique_ptr<Scratch> scratch;
-    if (!scratch) scratch = std::make_unique<Scratch>();
-#pragma omp for schedule(dynamic, 1)
-    for (std::int64_t a = 0; a < tiles; ++a) {
-      const auto tile = static_cast<std::size_t>(s.active[static_cast<std::size_t>(a)]);
-      results[static_cast<std::size_t>(a)] = step_of_tile<G>(s, state, dt, s.boxes[tile], *scratch);
-      s.wet_boxes[tile] = wet_box(s, s.next, s.boxes[tile]);
-    }
-  }
+  s.scratch.prepare();
+  parallel_for(
+      tiles,
+      [&](std::int64_t a) {
+        const auto tile = static_cast<std::size_t>(s.active[static_cast<std::size_t>(a)]);
+        results[static_cast<std::size_t>(a)] = step_of_tile<G>(s, state, dt, s.boxes[tile], s.scratch.mine<Scratch>());
+        s.wet_boxes[tile] = wet_box(s, s.next, s.boxes[tile]);
+      },
+      worth_it);
   StepResult all;
   for (const StepResult& r : results)
     for (std::size_t k = 0; k < r.size(); ++k) {

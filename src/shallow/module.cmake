@@ -1,5 +1,5 @@
 # Mirror images and rotations must agree bit for bit: a*b + c*d must not become fma(a, b, c*d), which prefers one product.
-target_compile_options(bagnold_shallow PRIVATE -ffp-contract=off -fopenmp-simd)
+target_compile_options(bagnold_shallow PRIVATE -ffp-contract=off)
 bagnold_hot(shallow both_stages.cpp closure_rows.cpp face_rows.cpp measure_rows.cpp sweep.cpp)
 # Two packs go abreast only before the scheduler.
 bagnold_abreast(shallow face_rows.cpp measure_rows.cpp)

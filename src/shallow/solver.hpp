@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "shallow/rows.hpp"
 #include "shallow/state.hpp"
 
@@ -40,6 +41,7 @@ struct Solver {
   std::vector<double> crossing[2][4];  // boundary mass flux of each stage
   std::vector<StepResult> tile_results;
   std::vector<Tile> wet_boxes, grown_boxes;  // of each tile: around its wet cells after the step; scratch
+  PerThread scratch;
 };
 
 // Throws UnphysicalError for a set-up that means nothing (sizes, gravity, CFL, periodic sides that do not pair, ...).

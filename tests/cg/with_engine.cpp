@@ -106,7 +106,7 @@ TEST(ProfileFromInsideTheFastEngine, IsThatOfItsSnapshotsWhateverTheThreads) {
   for (const auto& [copies, alike] : {std::pair{1, false}, {9, false}, {1, true}, {9, true}}) {
     std::vector<double> bits;
     for (const int count : {1, 2, 3}) {
-      set_threads(count);
+      force_threads(count);
       dem::DemState s = small_chute(2e-3, copies, alike), twin = s;
       dem::prepare(s, laws);
       dem::prepare(twin, laws);

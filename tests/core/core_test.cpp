@@ -7,7 +7,6 @@
 #include "core/box.hpp"
 #include "core/fields.hpp"
 #include "core/memory.hpp"
-#include "core/parallel.hpp"
 #include "core/random.hpp"
 #include "core/registry.hpp"
 #include "core/vec3.hpp"
@@ -40,32 +39,6 @@ TEST(Random, IsUniformAndStreamsAreIndependent) {
   EXPECT_NEAR(sum / n, 0.5, five_sigma);
   EXPECT_NEAR(squares / n, 1.0 / 3, five_sigma);
   EXPECT_NEAR(product / n, 0, five_sigma / std::sqrt(12.0));
-}
-
-TEST(Parallel, SumsHaveTheSameBitsOnAnyNumberOfThreads) {
-  constexpr std::int64_t n = 12'345;  // not a multiple of the block
-  const auto sum = [] {
-    return parallel_sum<double>(n, [](std::int64_t i) {
-      return std::sin(static_cast<double>(i)) * 1e8 + 1.0 / (1.0 + static_cast<double>(i));
-    });
-  };
-  const int before = threads();
-  set_threads(1);
-  const double alone = sum();
-  for (const int count : {2, 3, 7}) {
-    set_threads(count);
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(sum()), std::bit_cast<std::uint64_t>(alone)) << count;
-  }
-  set_threads(before);
-}
-
-TEST(Parallel, EveryItemOnce) {
-  std::vector<int> visits(5000);
-  parallel_blocks(5000, 64, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
-  });
-  parallel_for(5000, [&](std::int64_t i) { ++visits[static_cast<std::size_t>(i)]; });
-  EXPECT_EQ(visits, std::vector<int>(5000, 2));
 }
 
 TEST(Box, MinimumImageIsTheShortestAndWrapStaysInside) {

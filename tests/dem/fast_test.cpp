@@ -1,7 +1,5 @@
 // The fast engine against the plain one, and against itself: no contact missed, and bits that depend on nothing but
 // the input.
-#include <omp.h>
-
 #include <algorithm>
 #include <functional>
 #include <vector>
@@ -131,7 +129,7 @@ TEST(Fast, SameBitsWhateverTheThreadsTheOutputOrTheInterruptions) {
     ASSERT_GT(once.rebuilds, 1);
 
     for (const int count : {2, 3}) {
-      set_threads(count);
+      force_threads(count);
       DemState threaded = start;
       advance(threaded, mixture.laws, 403);
       EXPECT_TRUE(bits(threaded) == expected) << mixture.name << ", threads " << count;

@@ -233,7 +233,7 @@ TEST(Bits, DoNotDependOnThreadsObservationOrInterruption) {
   const ContactLaws laws = compile(model_of({.rolling = true}), 0.5);
   const auto run = [&](int threads, bool observe, bool interrupt) {
     const int before = bagnold::threads();
-    set_threads(threads);
+    force_threads(threads);
     DemState s = packing(7, 9);
     s.keep_ledger = true;
     s.reorder_every = 20;

@@ -62,7 +62,7 @@ TEST(Invariance, MirrorAndQuarterTurnsBitForBit) {
 
 TEST(Invariance, ThreadsAndTilesDoNotShow) {
   const auto result = [](int threads, int tile_nx, int tile_ny) {
-    set_threads(threads);
+    force_threads(threads);
     Definition s = release(150, 20, true);
     s.scheme.tile_nx = tile_nx;
     s.scheme.tile_ny = tile_ny;

@@ -148,7 +148,7 @@ TEST(Exactness, SameBitsWhateverTheThreadsAndAfterRestart) {
     set_threads(1);
     Simulation one = fresh();
     steps(one, 30);
-    set_threads(2);
+    force_threads(2);
     Simulation two = fresh();
     steps(two, 18);
     Simulation resumed{two.model, two.state, {}};  // the state arrays are all that is copied

@@ -1,7 +1,6 @@
 #include "dem/fast/engine.hpp"
 
 #include <fmt/core.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,7 +159,7 @@ void pass(Engine& engine, const Tables& tables, int from, int to, const Watch* w
   const auto forces = [&](int s, int t) {
     const auto a = static_cast<std::size_t>(s), b = static_cast<std::size_t>(engine.ring.wrap(s + 1));
     Section& section = engine.sections[a];
-    Scratch& scratch = engine.scratch[static_cast<std::size_t>(omp_get_thread_num())];
+    Scratch& scratch = engine.scratch[static_cast<std::size_t>(thread_index())];
     section.mid_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
     section.inner_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
     if (!section.mid_valid.holds() || !section.inner_valid.holds()) refresh(engine, a, scratch);
@@ -189,22 +188,19 @@ double excursion(const Engine& engine, const Slab& slab, double horizon) {
 }  // namespace
 
 bool audit(Engine& engine) {
-  bool all_hold =
-      std::all_of(engine.slabs.begin(), engine.slabs.end(), [&](const Slab& slab) { return holds(engine, slab); });
-  if (all_hold) return true;  // the usual case is not worth waking threads
-  all_hold = true;
-#pragma omp parallel for schedule(static) reduction(&& : all_hold) if (engine.grain.size() >= 500)
-  for (std::size_t s = 0; s < engine.slabs.size(); ++s) {
-    Slab& slab = engine.slabs[s];
+  if (std::all_of(engine.slabs.begin(), engine.slabs.end(), [&](const Slab& slab) { return holds(engine, slab); }))
+    return true;  // the usual case is not worth waking threads
+  const auto renewed_holds = [&](std::int64_t s) {
+    Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
     for (const int steps : {mid_steps, engine.ring.levels}) {
       if (holds(engine, slab)) break;
       slab.excursion = excursion(engine, slab, steps * engine.dt);
       slab.drift = {};
       slab.steps_left = steps;
     }
-    all_hold = all_hold && holds(engine, slab);
-  }
-  return all_hold;
+    return holds(engine, slab);
+  };
+  return parallel_all(static_cast<std::int64_t>(engine.slabs.size()), renewed_holds, engine.grain.size() >= 500);
 }
 
 namespace {

@@ -1,6 +1,5 @@
 // Between the plain state and the sorted copy.
 #include <fmt/core.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,4 @@
 // Contacts between lists: the pairs that touch with their springs, out of inner lists and into new ones.
-#include <omp.h>
-
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -102,7 +100,7 @@ void list_inner(Engine& engine, const PairList& remembered) {
     section.inner.count = 0;
     section.history.assign(8 * engine.history_numbers, 0);
     section.mid_valid = section.inner_valid = {};
-    refresh(engine, at(s), engine.scratch[at(omp_get_thread_num())]);
+    refresh(engine, at(s), engine.scratch[at(thread_index())]);
     for (std::size_t k = 0; k < section.inner.count; ++k) {
       const std::size_t i = row_of(section.inner.i[k]), j = row_of(section.inner.j[k]);
       for (std::uint32_t c = begin[std::min(i, j)]; c < begin[std::min(i, j) + 1]; ++c) {

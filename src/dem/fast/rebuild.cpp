@@ -73,16 +73,17 @@ void permute(const Engine& engine, Aligned<double>& rows, Aligned<double>& sorte
 
 // Nothing that is not a number, nothing faster than half a diameter per step.
 bool is_sound(const Engine& engine) {
-  bool sound = true;
-#pragma omp parallel for schedule(static) reduction(&& : sound) if (engine.grain.size() >= 500)
-  for (std::size_t s = 0; s < engine.slabs.size(); ++s)
-    for (std::size_t k = engine.slabs[s].begin; k < engine.slabs[s].moving_end; ++k) {
+  const auto slab_is_sound = [&](std::int64_t s) {
+    bool sound = true;
+    for (std::size_t k = engine.slabs[at(s)].begin; k < engine.slabs[at(s)].moving_end; ++k) {
       const double *x = &engine.rows.position[position_doubles * k], *v = &engine.rows.velocity[velocity_doubles * k];
       const double limit = v[3] / engine.dt, speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
       const double place2 = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
       sound = sound && speed2 <= limit * limit && place2 <= std::numeric_limits<double>::max();
     }
-  return sound;
+    return sound;
+  };
+  return parallel_all(static_cast<std::int64_t>(engine.slabs.size()), slab_is_sound, engine.grain.size() >= 500);
 }
 
 // Positions of all grains, those that flow wrapped into the box.

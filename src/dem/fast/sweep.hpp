@@ -16,8 +16,11 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <vector>
+
+#include "core/parallel.hpp"
 
 namespace bagnold::dem::fast {
 
@@ -50,28 +53,25 @@ inline Ring make_ring(const std::vector<std::size_t>& grains, int levels) {
 // move(slab, t) and act(section, t) for every slab, section and t in [from, to), on all threads.
 template <class Move, class Act>
 void sweep(const Ring& ring, int from, int to, bool threads, Move&& move, Act&& act) {
-#pragma omp parallel if (threads && ring.blocks() > 1)
-  {
-#pragma omp for schedule(static)
-    for (int k = 0; k < ring.blocks(); ++k) {
-      const int b = ring.border[static_cast<std::size_t>(k)], e = ring.border[static_cast<std::size_t>(k) + 1];
-      for (int front = b + from; front <= e - 1 - from; ++front)
-        for (int t = from; t < to; ++t) {
-          const int a = front - (t - from);
-          if (a < b + t || a > e - 1 - t) continue;
-          move(a, t);
-          if (a > b + t) act(a - 1, t);
-        }
-    }
-#pragma omp for schedule(static) nowait
-    for (int k = 0; k < ring.blocks(); ++k) {
-      const int e = ring.border[static_cast<std::size_t>(k) + 1];
+  const auto rise = [&](std::int64_t k) {
+    const int b = ring.border[static_cast<std::size_t>(k)], e = ring.border[static_cast<std::size_t>(k) + 1];
+    for (int front = b + from; front <= e - 1 - from; ++front)
       for (int t = from; t < to; ++t) {
-        for (int a = e - t; a <= e - 1 + t; ++a) move(ring.wrap(a), t);
-        for (int a = e - 1 - t; a <= e - 1 + t; ++a) act(ring.wrap(a), t);
+        const int a = front - (t - from);
+        if (a < b + t || a > e - 1 - t) continue;
+        move(a, t);
+        if (a > b + t) act(a - 1, t);
       }
+  };
+  const auto fall = [&](std::int64_t k) {
+    const int e = ring.border[static_cast<std::size_t>(k) + 1];
+    for (int t = from; t < to; ++t) {
+      for (int a = e - t; a <= e - 1 + t; ++a) move(ring.wrap(a), t);
+      for (int a = e - 1 - t; a <= e - 1 + t; ++a) act(ring.wrap(a), t);
     }
-  }
+  };
+  parallel_for(ring.blocks(), rise, threads);
+  parallel_for(ring.blocks(), fall, threads);
 }
 
 }  // namespace bagnold::dem::fast

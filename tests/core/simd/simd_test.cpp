@@ -1,6 +1,8 @@
 // A pack must answer lane by lane what double answers, whatever registers it lies in.
 #include "core/simd.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
