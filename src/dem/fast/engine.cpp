@@ -107,11 +107,8 @@ void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
   std::swap(section.history, scratch.history);
   if (engine.one_kind) return;
   section.kind.resize(section.inner.i.size());
-  const auto kinds = static_cast<std::uint32_t>(engine.laws.species);
   for (std::size_t k = 0; k < (section.inner.count + batch - 1) / batch * batch; ++k)
-    section.kind[k] = (static_cast<std::uint32_t>(engine.species[row_of(section.inner.i[k])]) * kinds +
-                       static_cast<std::uint32_t>(engine.species[row_of(section.inner.j[k])])) *
-                      static_cast<std::uint32_t>(engine.constant_numbers);
+    section.kind[k] = kind_of(engine, row_of(section.inner.i[k]), row_of(section.inner.j[k]));
 }
 
 namespace {
@@ -127,21 +124,26 @@ void with_kernel(const Engine& engine, F&& f) {
   });
 }
 
-// Adds the forces of section a, and shows its contacts to a watch.
+// Adds the forces of section a and of the walls on slab a, and shows their contacts to a watch.
 template <class K, class Tables>
 void act(Engine& engine, const Tables& tables, std::size_t a, Scratch& scratch, const Watch* watch = nullptr) {
+  using AtWalls = WallKernel<Tables, K::one_kind>;
   Section& section = engine.sections[a];
   const KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
   const Batches pairs{section.inner.i.data(), section.inner.j.data(), section.kind.data(), section.history.data(),
                       section.inner.count};
-  if (watch == nullptr) {
-    scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input));
-    return;
+  ContactPack* seen = nullptr;
+  if (watch != nullptr) {
+    const std::size_t most = pairs.count / batch + 1 + section.walls.batches.size();
+    if (scratch.packs.size() < most) scratch.packs.resize(most * 5 / 4 + 8);
+    seen = scratch.packs.data();
   }
-  if (scratch.packs.size() < pairs.count / batch + 1) scratch.packs.resize(pairs.count / batch * 5 / 4 + 8);
+  NoLedger none;
   std::size_t packs = 0;
-  scratch.excess = std::max(scratch.excess, K::act(engine.rows, pairs, tables, input, scratch.packs.data(), packs));
-  watch->fast_contacts(engine, a, ContactPacks(scratch.packs.data(), packs));
+  const double of_pairs = K::act(engine.rows, pairs, tables, input, none, seen, packs);
+  const double of_walls = AtWalls::act(engine.rows, section.walls, engine.walls, tables, input, none, seen, packs);
+  scratch.excess = std::max(scratch.excess, std::max(of_pairs, of_walls));
+  if (watch != nullptr) watch->fast_contacts(engine, a, ContactPacks(seen, packs));
 }
 
 // Steps [from, to) of an epoch; `watch` if the last is looked at.

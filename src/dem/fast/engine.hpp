@@ -4,6 +4,7 @@
 // holds follows from the state, so that a resumed run makes the same bits.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "dem/algorithm.hpp"
@@ -11,6 +12,7 @@
 #include "dem/fast/kernel.hpp"
 #include "dem/fast/lists.hpp"
 #include "dem/fast/sweep.hpp"
+#include "dem/fast/walls.hpp"
 #include "dem/state.hpp"
 
 namespace bagnold::dem::fast {
@@ -19,8 +21,9 @@ namespace bagnold::dem::fast {
 inline constexpr int mid_steps = 48, inner_steps = 4, steps_per_pass = 4;
 
 struct Slab {
-  std::size_t begin = 0, moving_end = 0, end = 0;  // rows: flowing, then fixed grains, then two that never touch
-  double acceleration = 0;                         // largest at the last step
+  // Rows: flowing, then fixed grains, then two that never touch, then one for each wall.
+  std::size_t begin = 0, moving_end = 0, end = 0;
+  double acceleration = 0;  // largest at the last step
   // Excursion from the start of the outer list is at most excursion + drift.distance for `steps_left` more steps.
   double excursion = 0;
   Drift drift;
@@ -34,6 +37,7 @@ struct Section {
   Aligned<std::uint32_t> kind;  // of the inner list
   Aligned<double> history;      // of the inner list, and a group of zeros behind
   Validity mid_valid, inner_valid;
+  WallList walls;  // of the slab
 };
 
 // What a thread needs to make a list.
@@ -61,7 +65,8 @@ struct Engine {
   Images images;
   Ring ring;
   Rows rows;
-  std::vector<std::int32_t> grain;    // of each row; -1: none
+  std::vector<Wall> walls;
+  std::vector<std::int32_t> grain;    // of each row; -1 - w: wall w; nobody: neither
   std::vector<std::int32_t> species;  // of each row, if there are several
   std::vector<std::uint32_t> row;     // of each grain
   std::vector<Vec3> start;            // of each row: where it was when the outer list was made
@@ -71,17 +76,27 @@ struct Engine {
   std::vector<Slab> slabs;
   std::vector<Section> sections;
   std::vector<Scratch> scratch;  // by thread
+
+  std::size_t rows_beside() const { return 2 + walls.size(); }  // of a slab, no grains
+  std::size_t wall_row(const Slab& slab, std::size_t wall) const { return slab.end + 2 + wall; }
 };
+
+inline constexpr std::int32_t nobody = std::numeric_limits<std::int32_t>::min();
+
+// Where the constants of a pair begin, if there are several species.
+inline std::uint32_t kind_of(const Engine& engine, std::size_t i, std::size_t j) {
+  return static_cast<std::uint32_t>((engine.species[i] * engine.laws.species + engine.species[j]) *
+                                    static_cast<std::int32_t>(engine.constant_numbers));
+}
 
 // Below this the plain engine is as fast.
 inline constexpr std::int64_t fewest_grains = 64;
 
-// False when the plain engine must do it: energy ledger kept, walls, a few grains only, or a periodic box only a few
-// grains wide.
+// False when the plain engine must do it: an energy ledger kept, a few grains only, or a periodic box only a few grains wide.
 bool supports(const DemState& state);
 
-// While the engine is at work it holds the grains and their contacts: the arrays x, v, omega, force, torque and `pairs`
-// of the state are empty. enter() takes them, and keeps its lists if the state is the one it left behind; leave() gives
+// While the engine is at work it holds the grains and their contacts: the arrays x, v, omega, force, torque, `pairs` and
+// `wall_contacts` of the state are empty. enter() takes them, and keeps its lists if the state is the one it left behind; leave() gives
 // them back (nothing if it does not have them).
 void enter(Engine& engine, DemState& state, const ContactLaws& laws);
 void leave(Engine& engine, DemState& state);
@@ -103,6 +118,14 @@ void rebuild(Engine& engine, DemState& state);
 
 // The pairs that touch with their springs, in the order of the sections.
 PairList touching_pairs(const Engine& engine);
+
+// Grains near walls, from where they start; the springs of those that touch, of the engine's and of the state's, and into
+// the lists of the one and the arrays of the other.
+void list_walls(Engine& engine, const Grains& grains);
+std::vector<WallTouch> wall_touches(const Engine& engine);
+std::vector<WallTouch> wall_touches(const DemState& state);
+void remember_walls(Engine& engine, const std::vector<WallTouch>& touches);
+void give_walls(const Engine& engine, DemState& state);
 
 // As dem::prepare: the forces at t = 0.
 void prepare(DemState& state, const ContactLaws& laws);

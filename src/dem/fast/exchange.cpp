@@ -107,6 +107,7 @@ void give_all(Engine& engine, DemState& state) {
   fill(g.omega, rows.velocity, velocity_doubles, 4, g.size());
   Aligned<double>().swap(rows.velocity);
   state.pairs = touching_pairs(engine);
+  give_walls(engine, state);
   fill(g.x, rows.position, position_doubles, 0, g.size());
   Aligned<double>().swap(rows.position);
 }
@@ -165,7 +166,7 @@ std::uint64_t fingerprint(const Grains& g) {
 
 bool supports(const DemState& state) {
   const Grains& g = state.grains;
-  if (state.keep_ledger || !state.walls.empty() || g.flowing < fewest_grains) return false;
+  if (state.keep_ledger || g.flowing < fewest_grains) return false;
   for (int k = 0; k < 3; ++k)
     if (state.box.periodic[at(k)] && state.box.length[k] < 2 * (largest_diameter(g) + 2 * skin_of(g))) return false;
   return true;
@@ -179,6 +180,11 @@ bool continues(const Engine& engine, const DemState& state, const ContactLaws& l
   for (int k = 0; k < 3; ++k)
     if (engine.box.length[k] != state.box.length[k] || engine.box.periodic[at(k)] != state.box.periodic[at(k)])
       return false;
+  const auto alike = [](const Wall& a, const Wall& b) {
+    return a.point == b.point && a.normal == b.normal && a.species == b.species;
+  };
+  if (!std::equal(engine.walls.begin(), engine.walls.end(), state.walls.begin(), state.walls.end(), alike))
+    return false;
   const bool same_laws = with_laws(laws, [&](const auto& tables) {
     std::vector<double> constants;
     flatten_tables(tables, constants);
@@ -194,6 +200,7 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   Grains& g = state.grains;
   engine.laws = laws;
   engine.box = state.box;
+  engine.walls = state.walls;
   engine.gravity = state.gravity;
   engine.dt = state.dt;
   engine.overlap_ratio = state.max_overlap_ratio;
@@ -218,14 +225,17 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   measure(engine);
   engine.scratch.resize(std::max(engine.scratch.size(), at(threads())));
   list_inner(engine, state.pairs);
+  remember_walls(engine, wall_touches(state));
   if (!anew) remember_origin(engine, state.pairs);
   state.pairs = {};
+  state.wall_contacts = {};
   if (anew) start_path(engine, state);
 }
 
 void enter(Engine& engine, DemState& state, const ContactLaws& laws) {
   if (!continues(engine, state, laws)) return load(engine, state, laws);
   state.pairs = {};
+  state.wall_contacts = {};
   take_grains(engine, state.grains);
 }
 

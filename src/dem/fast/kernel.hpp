@@ -81,9 +81,26 @@ struct KernelInput {
   double overlap_ratio;  // overlap/radius that counts as too large
 };
 
+inline Vec3Of<Lanes> load_vector(const double* memory) {
+  return {Lanes::load(memory), Lanes::load(memory + 8), Lanes::load(memory + 16)};
+}
+inline void store_vector(const Vec3Of<Lanes>& a, double* memory) {
+  a.x.store(memory);
+  a.y.store(memory + 8);
+  a.z.store(memory + 16);
+}
+
+// What a kernel says of every batch to who keeps account of energy (PairLedger in dem/fast/ledger.hpp); nobody does here.
+struct NoLedger {
+  static constexpr std::size_t noted = 0;  // packs between note() and deposit()
+  void note(auto&&...) const {}
+  void deposit(auto&&...) const {}
+};
+
 // EqualRadii: all grains have the same. OneKind: so do the constants of all species.
 template <class Tables, bool EqualRadii, bool OneKind>
 struct Kernel {
+  static constexpr bool one_kind = OneKind;
   static constexpr bool rolls = std::remove_pointer_t<decltype(Tables::rolling)>::active;
   static constexpr bool sized = reads_size<std::remove_cvref_t<decltype(*Tables::normal)>> || !EqualRadii;
   static constexpr bool symmetric = EqualRadii && !rolls;  // the torques on i and j are the same
@@ -108,15 +125,6 @@ struct Kernel {
     return size;
   }
 
-  static Vec3Of<Lanes> load(const double* memory) {
-    return {Lanes::load(memory), Lanes::load(memory + 8), Lanes::load(memory + 16)};
-  }
-  static void store(const Vec3Of<Lanes>& a, double* memory) {
-    a.x.store(memory);
-    a.y.store(memory + 8);
-    a.z.store(memory + 16);
-  }
-
   // What the law wants to know of a batch: r, v_ij, omega_i + omega_j, r_i + r_j; if it matters 1/m_i + 1/m_j and
   // r_i - r_j; unless the torques are the same omega_i - omega_j and 1/m_i - 1/m_j.
   static constexpr std::size_t collected = symmetric ? (sized ? 12 : 10) : 16, acted = symmetric ? 6 : 9;
@@ -125,9 +133,9 @@ struct Kernel {
                       const Images& images, double* to) {
     const Separation apart = separation(position, i, j);
     const RelativeMotion moving = relative_motion(velocity, i, j);
-    store(fold(images, apart.r), to);
-    store(moving.v, to + 24);
-    store(moving.spin_sum, to + 48);
+    store_vector(fold(images, apart.r), to);
+    store_vector(moving.v, to + 24);
+    store_vector(moving.spin_sum, to + 48);
     apart.reach.store(to + 72);
     if constexpr (collected > 10) {
       moving.inverse_mass.store(to + 80);
@@ -135,42 +143,57 @@ struct Kernel {
     }
     if constexpr (collected > 12) {
       const RowDifference d = difference(velocity, i, j, 4);
-      store(d.xyz, to + 96);
+      store_vector(d.xyz, to + 96);
       d.fourth.store(to + 120);
     }
   }
 
-  // Force and torques of a batch, 0 where the pair does not touch; its history moves on by dt. Returns the overlaps in
-  // excess of the permitted one. `record`: also what an observer wants to know but for the rows.
-  template <bool record, class Law>
-  static Lanes interact(const Law& law, const double* from, const Lanes& dt, const Lanes& overlap_ratio, double* memory,
-                        double* to, ContactPack* seen) {
+  // What collect() has put there, as the law sees it.
+  struct Encounter {
+    Motion motion;
+    Size size;
+  };
+  static Encounter encounter(const double* from) {
     const Lanes zero = 0.0;
     const Vec3Of<Lanes> nothing{zero, zero, zero};
-    Motion m{load(from), load(from + 24), load(from + 48), nothing, Lanes::load(from + 72), zero, 1.0};
+    Motion m{
+        load_vector(from), load_vector(from + 24), load_vector(from + 48), nothing, Lanes::load(from + 72), zero, 1.0};
     Lanes inverse_mass = zero, mass_difference = zero;
     if constexpr (collected > 10) {
       inverse_mass = Lanes::load(from + 80);
       m.size_difference = Lanes::load(from + 88);
     }
     if constexpr (collected > 12) {
-      m.spin_difference = load(from + 96);
+      m.spin_difference = load_vector(from + 96);
       mass_difference = Lanes::load(from + 120);
     }
+    return {m, sizes(m, inverse_mass, mass_difference)};
+  }
+
+  // Force and torques of a batch, 0 where the pair does not touch; its history moves on by dt. Returns the overlaps in
+  // excess of the permitted one. `record`: also what an observer wants to know but for the rows.
+  template <bool record, class Law, class Ledger>
+  static Lanes interact(const Law& law, const double* from, const Lanes& dt, const Lanes& overlap_ratio, double* memory,
+                        double* to, ContactPack* seen, Ledger& ledger, std::size_t place) {
+    const Lanes zero = 0.0;
+    const Vec3Of<Lanes> nothing{zero, zero, zero};
+    const auto [m, size] = encounter(from);
     const auto geometry = laws::pair_geometry(m);
-    History history{load(memory), nothing};
-    if constexpr (rolls) history.roll = load(memory + 24);
-    const auto force = laws::interact<true>(law, geometry, sizes(m, inverse_mass, mass_difference), dt, history);
+    History history{load_vector(memory), nothing};
+    if constexpr (rolls) history.roll = load_vector(memory + 24);
+    const History before = history;
+    const auto force = laws::interact<true>(law, geometry, size, dt, history);
     const auto touching = geometry.overlap > zero;
-    store(select(touching, history.spring, nothing), memory);
-    if constexpr (rolls) store(select(touching, history.roll, nothing), memory + 24);
-    store(select(touching, force.force, nothing), to);
-    store(select(touching, force.torque_i, nothing), to + 24);
-    if constexpr (!symmetric) store(select(touching, force.torque_j, nothing), to + 48);
+    store_vector(select(touching, history.spring, nothing), memory);
+    if constexpr (rolls) store_vector(select(touching, history.roll, nothing), memory + 24);
+    store_vector(select(touching, force.force, nothing), to);
+    store_vector(select(touching, force.torque_i, nothing), to + 24);
+    if constexpr (!symmetric) store_vector(select(touching, force.torque_j, nothing), to + 48);
+    ledger.note(geometry, force, touching, before, place, to + acted * batch);
     if constexpr (record) {
-      store(m.r, seen->branch[0].data());
-      store(geometry.n, seen->normal[0].data());
-      store(force.force, seen->force[0].data());
+      store_vector(m.r, seen->branch[0].data());
+      store_vector(geometry.n, seen->normal[0].data());
+      store_vector(force.force, seen->force[0].data());
       geometry.overlap.store(seen->overlap.data());
       seen->touching = to_integer(touching);
     }
@@ -180,47 +203,51 @@ struct Kernel {
 
   static void deposit(double* force, const Offset* i, const Offset* j, const double* from) {
     if constexpr (symmetric)
-      add_to_rows(force, i, j, load(from), load(from + 24));
+      add_to_rows(force, i, j, load_vector(from), load_vector(from + 24));
     else
-      add_to_rows(force, i, j, load(from), load(from + 24), load(from + 48));
+      add_to_rows(force, i, j, load_vector(from), load_vector(from + 24), load_vector(from + 48));
   }
 
   // Adds what the pairs do to the force rows, moves their history on by dt. Returns by how much the largest overlap
-  // exceeds the permitted one.
-  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input) {
-    std::size_t none = 0;
-    return pairs.count == 0 ? -1 : act<false>(rows, pairs, tables, input, nullptr, none);
-  }
-  // The same, with the contacts: `seen` has room for a pack per batch, `packs` of them are written.
-  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input, ContactPack* seen,
-                    std::size_t& packs) {
+  // exceeds the permitted one. With `seen`, which has room for a pack per batch, also the contacts; `packs` are written.
+  template <class Ledger>
+  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input, Ledger& ledger,
+                    ContactPack* seen, std::size_t& packs) {
     packs = 0;
-    return pairs.count == 0 ? -1 : act<true>(rows, pairs, tables, input, seen, packs);
+    if (pairs.count == 0) return -1;
+    return seen == nullptr ? act<false>(rows, pairs, tables, input, ledger, seen, packs)
+                           : act<true>(rows, pairs, tables, input, ledger, seen, packs);
+  }
+  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input) {
+    NoLedger none;
+    std::size_t packs = 0;
+    return act(rows, pairs, tables, input, none, nullptr, packs);
   }
 
  private:
-  template <bool record>
-  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input, ContactPack* seen,
-                    std::size_t& packs) {
+  template <bool record, class Ledger>
+  static double act(Rows& rows, const Batches& pairs, const Tables& tables, const KernelInput& input, Ledger& ledger,
+                    ContactPack* seen, std::size_t& packs) {
     return act<record>(rows.position.data(), rows.velocity.data(), rows.force.data(), pairs.i, pairs.j, pairs.kind,
-                       pairs.history, pairs.count, tables, input, seen, packs);
+                       pairs.history, pairs.count, tables, input, ledger, seen, packs);
   }
 
   // The law on a batch is one long chain of operations, each waiting for the last, while fetching rows and adding to rows
   // wait for memory and shuffles. So every turn takes three batches: it adds up the last, acts on the present and
   // collects the next, none of which needs the others, and the compiler mixes them (module.cmake asks it to). It may
   // because nothing here overlaps in memory: __restrict.
-  template <bool record>
+  template <bool record, class Ledger>
   [[gnu::flatten, gnu::noinline]] static double act(const double* __restrict position,
                                                     const double* __restrict velocity, double* __restrict force,
                                                     const Offset* __restrict i, const Offset* __restrict j,
                                                     const std::uint32_t* __restrict kind, double* __restrict history,
                                                     std::size_t count, const Tables& tables, const KernelInput input,
-                                                    ContactPack* __restrict seen, std::size_t& packs) {
+                                                    Ledger& account, ContactPack* __restrict seen, std::size_t& packs) {
+    Ledger ledger = account;  // in registers
     const Lanes dt = input.dt, ratio = input.overlap_ratio;
     auto law = pack_laws(tables, [&](std::size_t c) { return Lanes(input.constants[c]); });
     Lanes excess = -1.0;
-    alignas(64) double in[2 * collected * batch], out[acted * batch] = {};
+    alignas(64) double in[2 * collected * batch], out[(acted + Ledger::noted) * batch] = {};
     std::size_t now = 0, before = 0;
     const std::size_t last = (count - 1) / batch * batch;
     collect(position, velocity, i, j, input.images, in);
@@ -231,7 +258,8 @@ struct Kernel {
       now = collected * batch - now;
       const std::size_t next = std::min(p + batch, last);
       deposit(force, i + before, j + before, out);
-      excess = max(excess, interact<record>(law, from, dt, ratio, history + p * history_numbers, out, seen));
+      ledger.deposit(i + before, j + before, out + acted * batch);
+      excess = max(excess, interact<record>(law, from, dt, ratio, history + p * history_numbers, out, seen, ledger, p));
       if constexpr (record) {
         for (std::size_t k = 0; k < batch; ++k) {
           seen->i[k] = static_cast<std::uint32_t>(row_of(i[p + k]));
@@ -245,6 +273,8 @@ struct Kernel {
       before = p;
     }
     deposit(force, i + last, j + last, out);
+    ledger.deposit(i + last, j + last, out + acted * batch);
+    account = ledger;
     double largest = excess[0];
     for (int k = 1; k < Lanes::lanes; ++k) largest = excess[k] > largest ? excess[k] : largest;
     return largest;

@@ -18,8 +18,8 @@ namespace bagnold::dem::fast {
 namespace {
 
 void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& grid, const std::vector<Vec3>& start) {
-  const std::size_t rows = start.size() + 2 * static_cast<std::size_t>(grid.slabs);
-  engine.grain.assign(rows, -1);
+  const std::size_t rows = start.size() + engine.rows_beside() * at(grid.slabs);
+  engine.grain.assign(rows, nobody);
   engine.species.assign(engine.one_kind ? 0 : rows, 0);
   engine.row.resize(start.size());
   engine.start.assign(rows, Vec3{});
@@ -31,7 +31,7 @@ void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
         const std::size_t s = at(n), first = at(grid.cell_begin[s * cells]),
                           last = at(grid.cell_begin[(s + 1) * cells]);
         Slab& slab = engine.slabs[s];
-        std::size_t row = slab.begin = first + 2 * s;
+        std::size_t row = slab.begin = first + engine.rows_beside() * s;
         for (const bool flowing : {true, false}) {
           for (std::size_t q = first; q < last; ++q) {
             const auto i = at(grid.order[q]);
@@ -44,6 +44,10 @@ void place_rows(Engine& engine, const Grains& g, const neighbours::CellGrid& gri
           if (flowing) slab.moving_end = row;
         }
         slab.end = row;
+        for (std::size_t w = 0; w < engine.walls.size(); ++w) {
+          engine.grain[engine.wall_row(slab, w)] = -1 - static_cast<std::int32_t>(w);
+          if (!engine.one_kind) engine.species[engine.wall_row(slab, w)] = engine.walls[w].species;
+        }
       },
       rows >= 500);
 }
@@ -58,7 +62,7 @@ void permute(const Engine& engine, Aligned<double>& rows, Aligned<double>& sorte
       static_cast<std::int64_t>(engine.slabs.size()),
       [&](std::int64_t s) {
         const Slab& slab = engine.slabs[at(s)];
-        for (std::size_t k = slab.begin; k < slab.end + 2; ++k) {
+        for (std::size_t k = slab.begin; k < slab.end + engine.rows_beside(); ++k) {
           double* row = &sorted[doubles * k];
           if (k < slab.end)
             std::memcpy(row, &rows[doubles * was[at(engine.grain[k])]], doubles * sizeof(double));
@@ -110,7 +114,24 @@ void arrange(Engine& engine, const Grains& g, const std::vector<Vec3>& start) {
   for (const Slab& slab : engine.slabs) sizes.push_back(slab.end - slab.begin);
   engine.ring = make_ring(sizes, steps_per_pass);
   list_outer(engine, g, grid, start);
+  list_walls(engine, g);
 }
+
+namespace {
+
+// The part of a velocity that changes no distance from a wall.
+Vec3 along_walls(const Engine& engine, Vec3 velocity) {
+  std::vector<Vec3> across;  // an orthonormal base of the normals
+  for (const Wall& wall : engine.walls) {
+    Vec3 rest = wall.normal;
+    for (const Vec3& n : across) rest -= dot(rest, n) * n;
+    if (norm(rest) > 1e-6) across.push_back(rest / norm(rest));
+  }
+  for (const Vec3& n : across) velocity -= dot(velocity, n) * n;
+  return velocity;
+}
+
+}  // namespace
 
 void measure(Engine& engine) {
   struct Extremes {
@@ -144,7 +165,7 @@ void measure(Engine& engine) {
       all.lo[d] = std::min(all.lo[d], v.lo[d]);
       all.hi[d] = std::max(all.hi[d], v.hi[d]);
     }
-  engine.frame = 0.5 * (all.lo + all.hi);
+  engine.frame = along_walls(engine, 0.5 * (all.lo + all.hi));
   engine.built_at = engine.step;
 }
 
@@ -164,6 +185,7 @@ void rebuild(Engine& engine, DemState& state) {
     return load(engine, state, ContactLaws(engine.laws));
   }
   const PairList touching = touching_pairs(engine);
+  const std::vector<WallTouch> at_walls = wall_touches(engine);
   const std::vector<Vec3> x = wrapped_positions(engine, state);
   const std::vector<std::uint32_t> was = engine.row;
   engine.sections.clear();
@@ -187,6 +209,7 @@ void rebuild(Engine& engine, DemState& state) {
   }
   measure(engine);
   list_inner(engine, touching);
+  remember_walls(engine, at_walls);
   ++state.rebuilds;
   start_path(engine, state);
 }
