@@ -100,14 +100,12 @@ void read_scenario(const Section& section, const scenario::GrainMaterial& materi
   out.gravity = norm(out.state.gravity);
 }
 
-// tc/50 of the stiffest contact type; exactly collision_time/50 where that is the input.
+// That of the limiting pair; exactly collision_time/50 where that is the input.
 double automatic_step(const DemInput& in) {
-  double shortest = INFINITY;
-  for (const dem::ContactType& type : dem::contact_types(in.state, in.model)) shortest = std::min(shortest, type.tc);
   if (const auto* linear = std::get_if<laws::Linear>(&in.model.pairs.front().normal))
-    if (linear->collision_time && std::abs(*linear->collision_time / shortest - 1) < 1e-12)
-      shortest = *linear->collision_time;
-  return shortest / 50;
+    if (linear->collision_time && std::abs(*linear->collision_time / (50 * in.limit.step) - 1) < 1e-12)
+      return *linear->collision_time / 50;
+  return in.limit.step;
 }
 
 DemInput read_unlocated(config::Case& input) {
@@ -129,6 +127,7 @@ DemInput read_unlocated(config::Case& input) {
   out.state.keep_ledger = root.child("output").get<bool>("energy_ledger", out.scenario == "grains");
 
   out.laws = dem::compile(out.model, dem::mean_pair_mass(out.state.grains));
+  out.limit = dem::step_limit(out.state, out.model);
   out.state.dt = time.step ? *time.step : automatic_step(out);
   time_section.resolve("step", out.state.dt);
   try {

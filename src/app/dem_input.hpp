@@ -7,6 +7,7 @@
 #include "config/case.hpp"
 #include "dem/algorithm.hpp"
 #include "dem/contact_model.hpp"
+#include "dem/step_limit.hpp"
 
 namespace bagnold::app {
 
@@ -15,6 +16,7 @@ struct DemInput {
   dem::DemState state;  // prepared: ready to step
   dem::ContactModel model;
   dem::ContactLaws laws;
+  dem::StepLimit limit;  // the pair that decides the automatic step
   double end = 0;
   bool stop_when_arrested = false;
   double gravity = 0;                                          // magnitude
@@ -33,7 +35,7 @@ struct DemTime {
   static constexpr auto fields() {
     return std::tuple{
         required("end", "time", "when the run ends", &DemTime::end, positive()),
-        field("step", "time", "auto: tc/50 of the stiffest contact type", &DemTime::step, positive()),
+        field("step", "time", "auto: tc/50 of the lightest, stiffest pair that can meet", &DemTime::step, positive()),
         field("stop_when_arrested", "", "end earlier when everything is at rest (scenario grains: default false)",
               &DemTime::stop_when_arrested)};
   }

@@ -242,7 +242,11 @@ std::vector<Derived> dem_derived(const DemInput& in) {
   const dem::Grains& g = in.state.grains;
   const double steps = std::ceil(in.end / in.state.dt - 1e-6), grain_steps = steps * static_cast<double>(g.flowing);
   const double state_mb = static_cast<double>(g.size()) * 190e-6 + static_cast<double>(g.flowing) * 2 * 80e-6;
-  out.push_back({"time step", number(in.state.dt), "algorithm 1"});
+  const dem::StepLimit& limit = in.limit;
+  out.push_back({"time step", number(in.state.dt),
+                 limit.by_dashpots() ? fmt::format("{:.3g} of the largest stable step of {}",
+                                                   in.state.dt / limit.stable, to_string(limit))
+                                     : fmt::format("tc/{:.4g} of {}", limit.tc / in.state.dt, to_string(limit))});
   out.push_back({"steps", fmt::format("{:.0f}", steps), ""});
   out.push_back({"grains", fmt::format("{} + {} fixed", g.flowing, g.size() - g.flowing), "flowing + base"});
   out.push_back({"grain-steps", fmt::format("{:.3g}", grain_steps),

@@ -76,8 +76,8 @@ struct Finding {
   bool error = false;  // otherwise a warning
   std::string key, text;
 };
-// Of a prepared state: dt against tc of every contact type (> tc/10 error, > tc/20 warning), overlaps at the start
-// (> 1 % of the radius warning, > max_overlap_ratio error), no moving grains (error).
+// Of a prepared state: what step_findings (dem/step_limit.hpp) says, and overlaps at the start: > 1 % of the smaller
+// radius a warning, > 10 % an error.
 std::vector<Finding> physical_findings(const DemState& state, const ContactModel& model);
 
 }  // namespace bagnold::dem

@@ -1,4 +1,4 @@
-// What `check` prints: the table of contact types, and whether the step and the start make physical sense.
+// What `check` prints: the table of contact types, and whether the start makes physical sense.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include "dem/contact_laws.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/energy.hpp"
+#include "dem/step_limit.hpp"
 
 namespace bagnold::dem {
 
@@ -86,21 +87,7 @@ std::vector<ContactType> contact_types(const DemState& state, const ContactModel
 }
 
 std::vector<Finding> physical_findings(const DemState& state, const ContactModel& model) {
-  std::vector<Finding> findings;
-  if (state.grains.flowing == 0) return {{true, "scenario", "there are no moving grains"}};
-  for (const ContactType& type : contact_types(state, model)) {
-    if (!std::isfinite(type.tc)) {
-      findings.push_back(
-          {false, "contact.damping", fmt::format("{}-{} is overdamped and never rebounds", type.a, type.b)});
-      continue;
-    }
-    const double steps = type.tc / state.dt;
-    if (steps < 20 * (1 - 1e-9))
-      findings.push_back(
-          {steps < 10 * (1 - 1e-9), "time.step",
-           fmt::format("{:g} is 1/{:.3g} of the collision time {:g} of {}-{}; expected at most 1/{} (1/50 is usual)",
-                       state.dt, steps, type.tc, type.a, type.b, steps < 10 ? 10 : 20)});
-  }
+  std::vector<Finding> findings = step_findings(state, model);
   const double overlap = max_overlap_over_radius(state);
   if (overlap > 0.01)
     findings.push_back({overlap > 0.1, "scenario",
