@@ -35,6 +35,9 @@ for variant in $variants; do
   fi
   awk -v variant="$variant" '{print $1, $1 "." variant}' "$folder/$variant.functions" >"$folder/$variant.names"
   awk '{print $2}' "$folder/$variant.names" >"$folder/$variant.kept"
+  # Constants of inline functions are "unique" and cannot be made private: they get a name that nobody else has.
+  list "$variant" | awk -v suffix="$variant.$(basename "$folder")" '$2 == "u" {print $1, $1 "." suffix}' \
+    >>"$folder/$variant.names"
   $OBJCOPY --redefine-syms="$folder/$variant.names" "$folder/$variant.merged" "$folder/$variant.renamed"
   $OBJCOPY --keep-global-symbols="$folder/$variant.kept" "$folder/$variant.renamed" "$folder/$variant.o"
   rm "$folder/$variant.merged" "$folder/$variant.renamed"
