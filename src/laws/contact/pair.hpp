@@ -169,8 +169,9 @@ void add_rolling(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeom
     }
   }
   const N limit = law.rolling.limit(out.normal, size), trial2 = kr * kr * dot(roll, roll);
-  // A spring at its limit slides, also when it is read again after having been cut to it.
-  const auto slides = trial2 > N(1 - 1e-12) * limit * limit;
+  // A spring at its limit slides, also when it is read again after having been cut to it, by a function that rounds the
+  // overlap of a grazing contact another way.
+  const auto slides = trial2 > N(1 - 1e-9) * limit * limit;
   if (worthwhile(slides)) {
     const Vec3Of<N> cut = select(slides, limit * rsqrt(trial2), N(1)) * roll;
     if constexpr (Advance) {
