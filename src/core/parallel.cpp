@@ -77,10 +77,11 @@ struct Job {
   std::int64_t error_at = 0;
 };
 
-// What loops of one kind, told by their body, have cost per item.
+// What loops of one kind, told by their body, cost per item on one thread.
 struct Site {
   RangeBody body = nullptr;
   double item_ns = 0;
+  bool measured = false;  // on one thread
 };
 
 struct Team {
@@ -178,15 +179,14 @@ void post(Seat& seat) {
   if (seat.state.exchange(posted, std::memory_order_release) == asleep) seat.state.notify_one();
 }
 
-// Takes the work back from a thread that has not come, or waits until it is done. Returns whether it had to sleep.
-bool finish(Seat& seat) {
+// Takes the work back from a thread that has not come, or waits until it is done.
+void finish(Seat& seat) {
   std::uint32_t expected = posted;
-  if (seat.state.compare_exchange_strong(expected, idle, std::memory_order_acquire)) return false;
-  if (spin([&] { return seat.state.load(std::memory_order_acquire) == idle; })) return false;
+  if (seat.state.compare_exchange_strong(expected, idle, std::memory_order_acquire)) return;
+  if (spin([&] { return seat.state.load(std::memory_order_acquire) == idle; })) return;
   expected = running;
   if (seat.state.compare_exchange_strong(expected, awaited, std::memory_order_acquire))
     seat.state.wait(awaited, std::memory_order_acquire);
-  return true;
 }
 
 // As many seats as wished with threads on them, as far as the system gives them.
@@ -197,17 +197,13 @@ int fill_seats(Team& t, int wished) {
   return seats;
 }
 
-// What a loop has cost per item; one that was interrupted by the system counts for little.
-void learn(Site& site, double item_ns) {
-  site.item_ns = site.item_ns > 0 ? 0.9 * site.item_ns + 0.1 * std::min(item_ns, 3 * site.item_ns) : item_ns;
-}
-
-// Time of a loop on this thread alone.
+// Time of a loop on this thread alone. What the system has interrupted counts for little.
 double run_alone(const Job& job, Site& site) {
   const double begin = now();
   job.body(job.context, 0, job.n);
-  const double time = now() - begin;
-  learn(site, time / static_cast<double>(job.n));
+  const double time = now() - begin, item_ns = time / static_cast<double>(job.n);
+  site.item_ns = site.measured ? 0.7 * site.item_ns + 0.3 * std::min(item_ns, 3 * site.item_ns) : item_ns;
+  site.measured = true;
   return time;
 }
 
@@ -225,21 +221,16 @@ void hand_out(Team& t, int seats, double item_ns) {
     t.seats[k]->share.store(pack(chunks * k / parts, chunks * (k + 1) / parts), std::memory_order_relaxed);
 }
 
-struct Times {
-  double all, waited;  // ns; waited: asleep, for threads that are not done
-};
-
-Times run_shared(Team& t, int seats, Site& site) {
+// Time of a loop on so many seats.
+double run_shared(Team& t, int seats, Site& site) {
   hand_out(t, seats, site.item_ns);
   const double begin = now();
   for (int k = 1; k < seats; ++k) post(*t.seats[static_cast<std::size_t>(k)]);
   take_part(t, 0);
-  const double worked = now();
-  bool slept = false;
-  for (int k = 1; k < seats; ++k) slept = finish(*t.seats[static_cast<std::size_t>(k)]) || slept;
-  const double end = now();
-  if (t.seats[0]->done > 0) learn(site, (worked - begin) / static_cast<double>(t.seats[0]->done));
-  return {end - begin, slept ? end - worked : 0};
+  const auto mine = static_cast<double>(t.seats[0]->done);
+  if (!site.measured && mine > 0) site.item_ns = (now() - begin) / mine;  // for want of better
+  for (int k = 1; k < seats; ++k) finish(*t.seats[static_cast<std::size_t>(k)]);
+  return now() - begin;
 }
 
 // For one caller at a time; false if there is another.
@@ -269,8 +260,8 @@ void run_with(Team& t, int wished) {
     if (work > 0) wished = static_cast<int>(std::min<double>(wished, work / share_ns));
     if (wished < 2) return static_cast<void>(run_alone(job, site));
     const int seats = fill_seats(t, seats_now(t.tempo, wished));
-    const Times times = seats > 1 ? run_shared(t, seats, site) : Times{run_alone(job, site), 0};
-    record(t.tempo, wished, work, times.all, times.waited);
+    const double time = seats > 1 ? run_shared(t, seats, site) : run_alone(job, site);
+    record(t.tempo, wished, site.item_ns * static_cast<double>(job.n), time);
   }
   if (job.error) std::rethrow_exception(std::exchange(job.error, nullptr));
 }

@@ -6,38 +6,47 @@ namespace bagnold {
 
 namespace {
 
-void end_trial(Tempo& tempo, double rate) {
-  const bool better = rate > tempo.rate;
-  if (better) tempo.seats = tempo.trial;
-  tempo.patience = better ? 1 : std::min(2 * tempo.patience, Tempo::most_patience);
-  tempo.trial = tempo.windows = 0;
+// Half the team and twice the team in turn, as far as there are such.
+void begin_trial(Tempo& tempo, int wished) {
+  const int seats = std::min(tempo.seats, wished);
+  if (seats == 1 || seats == wished) tempo.smaller_next = seats > 1;
+  tempo.other = tempo.smaller_next ? seats / 2 : std::min(wished, 2 * seats);
+  tempo.smaller_next = !tempo.smaller_next;
+  tempo.turn = Tempo::Turn::other;
 }
 
-void begin_trial(Tempo& tempo, double rate, int wished) {
-  const int seats = std::min(tempo.seats, wished);
-  const bool disturbed = tempo.waited > Tempo::disturbing * tempo.time;
-  const int next = disturbed ? std::max(1, seats / 2) : std::min(wished, 2 * seats);
-  if (next == seats) return;
-  tempo.trial = next;
-  tempo.rate = rate;
+void end_trial(Tempo& tempo, double rate) {
+  const bool change =
+      tempo.other < tempo.seats ? Tempo::gain * tempo.other_rate > rate : tempo.other_rate > Tempo::gain * rate;
+  if (change) tempo.seats = tempo.other;
+  tempo.patience = change ? 1 : std::min(2 * tempo.patience, Tempo::most_patience);
+  tempo.windows = tempo.other = 0;
+  tempo.turn = Tempo::Turn::team;
 }
 
 }  // namespace
 
-int seats_now(const Tempo& tempo, int wished) { return std::min(tempo.trial > 0 ? tempo.trial : tempo.seats, wished); }
+int seats_now(const Tempo& tempo, int wished) {
+  return std::min(tempo.turn == Tempo::Turn::other ? tempo.other : tempo.seats, wished);
+}
 
-void record(Tempo& tempo, int wished, double work, double time, double waited) {
+void record(Tempo& tempo, int wished, double work, double time) {
   tempo.work += work;
   tempo.time += time;
-  tempo.waited += waited;
   if (tempo.time < Tempo::window_ns) return;
   const double rate = tempo.work / tempo.time;
-  ++tempo.windows;
-  if (tempo.trial > 0)
-    end_trial(tempo, rate);
-  else if (tempo.windows >= tempo.patience)
-    begin_trial(tempo, rate, wished);
-  tempo.work = tempo.time = tempo.waited = 0;
+  tempo.work = tempo.time = 0;
+  switch (tempo.turn) {
+    case Tempo::Turn::team:
+      if (++tempo.windows >= tempo.patience && wished > 1) begin_trial(tempo, wished);
+      return;
+    case Tempo::Turn::other:
+      tempo.other_rate = rate;
+      tempo.turn = Tempo::Turn::team_again;
+      return;
+    case Tempo::Turn::team_again:
+      end_trial(tempo, rate);
+  }
 }
 
 }  // namespace bagnold
