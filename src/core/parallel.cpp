@@ -77,18 +77,19 @@ struct Job {
   std::int64_t error_at = 0;
 };
 
-// What loops of one kind, told by their body, cost per item on one thread.
+// What is known of loops of one kind, told by their body.
 struct Site {
   RangeBody body = nullptr;
-  double item_ns = 0;
-  bool measured = false;  // on one thread
+  double item_ns = 0;     // on one thread
+  bool measured = false;  // it was
+  double weight = 0;      // of an item in the work of a window
 };
 
 struct Team {
   std::atomic<bool> in_use{false};
   std::vector<std::unique_ptr<Seat>> seats;
   Job job;
-  std::array<Site, 256> sites;
+  std::array<Site, 512> sites;
   Tempo tempo;
 };
 
@@ -197,14 +198,25 @@ int fill_seats(Team& t, int wished) {
   return seats;
 }
 
-// Time of a loop on this thread alone. What the system has interrupted counts for little.
-double run_alone(const Job& job, Site& site) {
+// A table with a place for every body; should it be full, one forgets another.
+Site& site_of(Team& t, RangeBody body) {
+  const std::size_t home = (reinterpret_cast<std::uintptr_t>(body) >> 4) % t.sites.size();
+  std::size_t place = home;
+  while (t.sites[place].body != body && t.sites[place].body != nullptr) {
+    place = (place + 1) % t.sites.size();
+    if (place == home) t.sites[home] = {};
+  }
+  t.sites[place].body = body;
+  return t.sites[place];
+}
+
+// On this thread alone. Times that the system has interrupted count for little.
+void run_alone(const Job& job, Site& site) {
   const double begin = now();
   job.body(job.context, 0, job.n);
-  const double time = now() - begin, item_ns = time / static_cast<double>(job.n);
+  const double item_ns = (now() - begin) / static_cast<double>(job.n);
   site.item_ns = site.measured ? 0.7 * site.item_ns + 0.3 * std::min(item_ns, 3 * site.item_ns) : item_ns;
   site.measured = true;
-  return time;
 }
 
 // Cuts the loop into chunks and gives every seat an equal part of them.
@@ -221,8 +233,7 @@ void hand_out(Team& t, int seats, double item_ns) {
     t.seats[k]->share.store(pack(chunks * k / parts, chunks * (k + 1) / parts), std::memory_order_relaxed);
 }
 
-// Time of a loop on so many seats.
-double run_shared(Team& t, int seats, Site& site) {
+void run_shared(Team& t, int seats, Site& site) {
   hand_out(t, seats, site.item_ns);
   const double begin = now();
   for (int k = 1; k < seats; ++k) post(*t.seats[static_cast<std::size_t>(k)]);
@@ -230,7 +241,6 @@ double run_shared(Team& t, int seats, Site& site) {
   const auto mine = static_cast<double>(t.seats[0]->done);
   if (!site.measured && mine > 0) site.item_ns = (now() - begin) / mine;  // for want of better
   for (int k = 1; k < seats; ++k) finish(*t.seats[static_cast<std::size_t>(k)]);
-  return now() - begin;
 }
 
 // For one caller at a time; false if there is another.
@@ -251,22 +261,28 @@ struct Occupied {
 void run_with(Team& t, int wished) {
   Job& job = t.job;
   job.error = nullptr;
-  Site& site = t.sites[(reinterpret_cast<std::uintptr_t>(job.body) >> 4) % t.sites.size()];
-  if (site.body != job.body) site = {job.body, 0};
+  Site& site = site_of(t, job.body);
   if (forced) {
     run_shared(t, fill_seats(t, wished), site);
   } else {
     const double work = site.item_ns * static_cast<double>(job.n);
-    if (work > 0) wished = static_cast<int>(std::min<double>(wished, work / share_ns));
-    if (wished < 2) return static_cast<void>(run_alone(job, site));
+    if (work > 0) wished = std::max(1, static_cast<int>(std::min<double>(wished, work / share_ns)));
     const int seats = fill_seats(t, seats_now(t.tempo, wished));
-    const double time = seats > 1 ? run_shared(t, seats, site) : run_alone(job, site);
-    record(t.tempo, wished, site.item_ns * static_cast<double>(job.n), time);
+    const double begin = now();
+    if (seats > 1)
+      run_shared(t, seats, site);
+    else
+      run_alone(job, site);
+    if (may_measure(t.tempo) || site.weight == 0) site.weight = site.item_ns;
+    record(t.tempo, {wished, site.weight * static_cast<double>(job.n), site.measured, begin, now()});
   }
   if (job.error) std::rethrow_exception(std::exchange(job.error, nullptr));
 }
 
 }  // namespace
+
+Alone::Alone(bool meant) : before_(inside) { inside = inside || meant; }
+Alone::~Alone() { inside = before_; }
 
 void run_items(std::int64_t n, RangeBody body, void* context) {
   if (n <= 0) return;

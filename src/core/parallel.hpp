@@ -21,6 +21,19 @@ void force_threads(int count);
 int threads();       // at most so many take part in a loop
 int thread_index();  // who runs this item: 0 to threads() - 1, for memory of its own; 0 outside of loops
 
+// While it lives, and if it is meant, loops of this thread stay on it: where most of the work cannot be shared, sharing
+// the rest only moves data between processors.
+class Alone {
+ public:
+  explicit Alone(bool meant = true);
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+  ~Alone();
+
+ private:
+  bool before_;
+};
+
 // Scratch memory of each thread, one object of a type that only who uses it has to know. A copy has none.
 class PerThread {
  public:

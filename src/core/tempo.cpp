@@ -1,6 +1,7 @@
 #include "core/tempo.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace bagnold {
 
@@ -30,15 +31,20 @@ int seats_now(const Tempo& tempo, int wished) {
   return std::min(tempo.turn == Tempo::Turn::other ? tempo.other : tempo.seats, wished);
 }
 
-void record(Tempo& tempo, int wished, double work, double time) {
-  tempo.work += work;
-  tempo.time += time;
+void record(Tempo& tempo, const LoopRun& loop) {
+  tempo.work += loop.work;
+  tempo.unknown += loop.known ? 0 : loop.work;
+  tempo.time += loop.end - loop.begin + std::min(loop.begin - tempo.last, Tempo::pause_ns);
+  tempo.last = loop.end;
+  tempo.most = std::max(tempo.most, loop.wished);
   if (tempo.time < Tempo::window_ns) return;
   const double rate = tempo.work / tempo.time;
-  tempo.work = tempo.time = 0;
+  const bool new_kind = tempo.unknown > 0.5 * tempo.work;
+  const int wished = std::exchange(tempo.most, 1);
+  tempo.work = tempo.time = tempo.unknown = 0;
   switch (tempo.turn) {
     case Tempo::Turn::team:
-      if (++tempo.windows >= tempo.patience && wished > 1) begin_trial(tempo, wished);
+      if ((++tempo.windows >= tempo.patience || new_kind) && wished > 1) begin_trial(tempo, wished);
       return;
     case Tempo::Turn::other:
       tempo.other_rate = rate;

@@ -145,6 +145,27 @@ TEST_P(Parallel, LoopsWithinItemsStayOnTheirThread) {
   EXPECT_EQ(visits, std::vector<int>(visits.size(), 10));
 }
 
+TEST_P(Parallel, LoopsStayWithWhoWantsToBeAlone) {
+  const auto stays = [] {
+    std::atomic<bool> all{true};
+    const auto id = std::this_thread::get_id();
+    parallel_for(64, [&](std::int64_t) {
+      work(20us);
+      if (std::this_thread::get_id() != id) all = false;
+    });
+    return all.load();
+  };
+  {
+    const Alone alone;
+    const Alone not_meant(false);
+    for (int round = 0; round < 20; ++round) EXPECT_TRUE(stays());
+  }
+  if (GetParam() == 1) return;
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (stays() && std::chrono::steady_clock::now() < end) continue;
+  EXPECT_LT(std::chrono::steady_clock::now(), end);  // others come again
+}
+
 TEST_P(Parallel, TheFirstExceptionReachesTheCaller) {
   for (int round = 0; round < 30; ++round) {
     try {

@@ -17,7 +17,8 @@ std::vector<int> sizes(Tempo& tempo, const Speed& speed, int wished, int loops) 
   std::vector<int> used;
   for (int k = 0; k < loops; ++k) {
     used.push_back(seats_now(tempo, wished));
-    record(tempo, wished, 1e5, 1e5 / speed(used.back()));
+    const double begin = tempo.last + 1e3;
+    record(tempo, {wished, 1e5, true, begin, begin + 1e5 / speed(used.back())});
   }
   return used;
 }
@@ -62,6 +63,17 @@ TEST(Tempo, TwiceTheThreadsHaveToBeAFifthFaster) {
   }
 }
 
+TEST(Tempo, AnotherKindOfLoopIsTriedAtOnce) {
+  Tempo tempo;
+  sizes(tempo, quiet, 2, 200'000);  // others are tried seldom by now
+  int loops = 0;
+  for (bool known = false; seats_now(tempo, 2) == 2 && loops < 10'000; ++loops) {
+    record(tempo, {2, 1e5, known, tempo.last, tempo.last + 1e5});
+    known = seats_now(tempo, 2) == 1;
+  }
+  EXPECT_LE(loops, 2 * Tempo::window_ns / 1e5);
+}
+
 TEST(Tempo, FindsTheSizeThatIsFastest) {
   for (const int best : {1, 2, 4, 8}) {
     Tempo tempo;
@@ -77,7 +89,7 @@ TEST(Tempo, NeverMoreThanALoopIsWorth) {
   for (int k = 0; k < 10'000; ++k) {
     const int wished = 1 + k % 8;
     EXPECT_TRUE(seats_now(tempo, wished) >= 1 && seats_now(tempo, wished) <= wished);
-    record(tempo, wished, 1e5, 1e5);
+    record(tempo, {wished, 1e5, true, tempo.last, tempo.last + 1e5});
   }
 }
 

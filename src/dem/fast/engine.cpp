@@ -228,6 +228,7 @@ void check(Engine& engine, DemState& state) {
 
 void take_steps(Engine& engine, DemState& state, std::int64_t steps, const Watch& watch) {
   engine.scratch.resize(std::max(engine.scratch.size(), static_cast<std::size_t>(threads())));
+  const Alone alone(engine.ring.blocks() == 1);
   for (const std::int64_t end = engine.step + steps; engine.step < end;) {
     int level = static_cast<int>(engine.step % engine.ring.levels);
     if (level == 0 && !audit(engine)) {
