@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/model.hpp"
@@ -18,7 +19,6 @@ class ShallowModel final : public Model {
   explicit ShallowModel(ShallowInput input)
       : in_(std::move(input)), initial_mass_(shallow::total_mass(in_.solver, in_.state)) {
     start_maps(in_, maps_);
-    for (const shallow::Boundary& b : in_.solver.setup.boundary) fed_ |= b.kind == shallow::BoundaryKind::inflow;
   }
 
   std::string_view scenario() const override { return in_.scenario; }
@@ -29,12 +29,12 @@ class ShallowModel final : public Model {
 
   void advance(double until) override {
     while (in_.state.time < until * (1 - 1e-12) && !ended() && !stop_requested()) {
-      shallow::advance_one_step(in_.solver, in_.state);
+      shallow::advance_one_step(in_.solver, in_.state, in_.end);
       observe(in_, maps_);
-      arrested_ = !fed_ && shallow::at_rest(in_.solver, in_.state) ? arrested_ + 1 : 0;
+      watch_end();
     }
   }
-  bool ended() const override { return in_.stop_when_arrested && arrested_ >= steps_at_rest; }
+  bool ended() const override { return in_.stop_when_arrested && (arrested_ >= steps_at_rest || all_left()); }
   std::string status() const override { return arrested_ >= steps_at_rest ? "arrested" : "completed"; }
 
   std::vector<NamedArray> state() override {
@@ -42,6 +42,7 @@ class ShallowModel final : public Model {
     for (const NamedArray& a : map_arrays(maps_)) arrays.push_back(a);
     arrays.push_back({"initial_mass", &initial_mass_});
     arrays.push_back({"arrested", &arrested_});
+    arrays.push_back({"all_left_at", &all_left_at_});
     return arrays;
   }
   void restored() override {
@@ -93,6 +94,7 @@ class ShallowModel final : public Model {
     summary["tail"] = number(row[5]);
     summary["mass"] = row[1];
     summary["mass_out"] = row[2];
+    summary["all_left_at"] = number(all_left_at_);
     summary["max_speed"] = *std::max_element(maps_.max_speed.begin(), maps_.max_speed.end());
     double used = 0, outside = 0;
     for (std::size_t k = 0; k < maps_.max_h.size(); ++k) {
@@ -111,6 +113,9 @@ class ShallowModel final : public Model {
     return {{"cells", fmt::format("{} x {}", g.nx, g.ny), "grid"},
             {"cell size", fmt::format("{:.4g} x {:.4g}", g.dx, g.dy), "length"},
             {"mass", fmt::format("{:.6g}", initial_mass_), "in the domain at the start"},
+            {"dry depth", fmt::format("{:.4g}", s.setup.scheme.dry_depth),
+             fmt::format("thinner layers neither move nor push; {:.2g} of the largest thickness, {:.4g}",
+                         s.setup.scheme.dry_depth / in_.largest_thickness, in_.largest_thickness)},
             {"wave speed", fmt::format("{:.4g}", c), "sqrt(K g cos(theta) h) of the thickest cell"},
             {"first step", h > 0 ? fmt::format("{:.3g}", s.setup.scheme.cfl * g.dx / c) : "none",
              "about; cfl dx/wave speed"},
@@ -119,11 +124,20 @@ class ShallowModel final : public Model {
 
  private:
   static constexpr std::int64_t steps_at_rest = 10;  // in a row, before the run counts as over
+
+  bool all_left() const { return !std::isnan(all_left_at_); }
+  // Nothing can happen any more where nothing is to come and everything rests, or nothing is thick enough to move.
+  void watch_end() {
+    const bool over = !shallow::more_to_come(in_.solver, in_.state.time), dry = shallow::is_dry(in_.solver);
+    if (over && dry && !all_left()) all_left_at_ = in_.state.time;
+    arrested_ = over && !dry && shallow::at_rest(in_.solver, in_.state) ? arrested_ + 1 : 0;
+  }
+
   ShallowInput in_;
   ShallowMaps maps_;
   double initial_mass_ = 0, updates_before_ = 0;
+  double all_left_at_ = std::numeric_limits<double>::quiet_NaN();
   std::int64_t arrested_ = 0;
-  bool fed_ = false;
 };
 
 }  // namespace

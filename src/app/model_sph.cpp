@@ -44,7 +44,7 @@ class SphModel final : public Model {
 
   void advance(double until) override {
     while (state_.time < until && !ended() && !stop_requested()) {
-      sph::step(state_, work_, in_.model);
+      sph::step(state_, work_, in_.model, in_.end);
       particle_steps_ += static_cast<double>(state_.particles.size());
       if (on_plane())
         watch_steadiness();
@@ -144,7 +144,8 @@ class SphModel final : public Model {
     refresh(state_, work_, in_.model);
     const auto flow = steady_flow(in_.plane, in_.model);
     const auto rows = static_cast<std::size_t>(std::max(1L, std::lround(in_.plane.height / in_.plane.spacing)));
-    std::vector<std::vector<double>> cells(6, std::vector<double>(rows, NAN));
+    std::vector<std::vector<double>> cells(7, std::vector<double>(rows, NAN));
+    cells.back().assign(rows, state_.time);
     std::vector<double> count(rows, 0.0), z(rows, 0.0), u(rows, 0.0), p(rows, 0.0), rho(rows, 0.0);
     const sph::Particles& q = state_.particles;
     for (std::size_t i = 0; i < q.mass.size(); ++i) {
@@ -161,7 +162,7 @@ class SphModel final : public Model {
                                p[r] / count[r],
                                flow.pressure(height, in_.model.grains().grain_density),
                                rho[r] / count[r]};
-      for (std::size_t c = 0; c < 6; ++c) cells[c][r] = values[c];
+      for (std::size_t c = 0; c < std::size(values); ++c) cells[c][r] = values[c];
     }
     io::write_csv(directory / "profile.csv",
                   {{"z", "m", "height over the base"},
@@ -169,7 +170,8 @@ class SphModel final : public Model {
                    {"u_x_exact", "m/s", "eq. 56"},
                    {"p", "Pa", "pressure"},
                    {"p_exact", "Pa", "hydrostatic"},
-                   {"rho", "kg/m^3", "bulk density"}},
+                   {"rho", "kg/m^3", "bulk density"},
+                   {"t", "s", "time of the profile"}},
                   cells, io::CsvHeader::names_and_units);
   }
 
@@ -316,7 +318,8 @@ class SphModel final : public Model {
     io::write_vti(path,
                   {.origin = {g.origin[0], g.origin[1], g.origin[2]},
                    .spacing = {g.spacing, g.spacing, g.spacing},
-                   .cells = g.cells},
+                   .cells = g.cells,
+                   .time = state_.time},
                   {{"filled", std::span<const double>(g.filled)},
                    {"v", std::span<const Vec3>(v)},
                    {"speed", std::span<const double>(g.speed)},

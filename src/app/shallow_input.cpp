@@ -15,6 +15,10 @@ namespace {
 using config::Case;
 using config::Section;
 
+// Of the largest thickness. A front advances by a cell once that holds dry_depth, with what momentum came in last: a tip
+// that spans many cells below it is slowed on fine grids (docs/shallow.md).
+constexpr double dry_part = 1e-6, arrival_part = 1e-3;
+
 shallow::Boundary read_boundary(const Section& s, const char* side) {
   const std::string kind = s.choose(side, "outflow", {"wall", "outflow", "periodic", "inflow"});
   shallow::Boundary b;
@@ -32,9 +36,27 @@ shallow::Boundary read_boundary(const Section& s, const char* side) {
 
 void read_scheme(const Section& s, shallow::Scheme& scheme, double diameter) {
   scheme.cfl = s.get<double>("cfl", scheme.cfl, Range{.lo = 0, .hi = 0.5, .lo_open = true});
-  scheme.dry_depth = s.get<double>("dry_depth", 1e-3 * diameter, positive(), "length");
   scheme.tip_depth = s.get<double>("tip_depth", 3 * diameter, non_negative(), "length");
   if (const auto step = s.get_auto("max_step", positive(), "time")) scheme.max_step = *step;
+}
+
+// Both default to a fraction of the largest thickness: nothing else in a case says what is thin.
+void read_depths(const Section& scheme, const Section& observe, ShallowInput& out) {
+  for (const shallow::Boundary& b : out.solver.setup.boundary)
+    for (const double h : b.inflow.h) out.largest_thickness = std::max(out.largest_thickness, h);
+  const double h = out.largest_thickness;
+  if (!(h > 0)) throw UnphysicalError("release.thickness", "nothing is released and nothing flows in");
+  const double dry = scheme.get_auto("dry_depth", positive(), "length").value_or(dry_part * h);
+  if (!(dry < h))
+    scheme.fail("dry_depth", fmt::format("expected less than the largest thickness, {:g}: nothing would move", h));
+  scheme.resolve("dry_depth", dry);
+  shallow::set_dry_depth(out.solver, dry);
+  shallow::refresh(out.solver, out.state);
+  if (shallow::is_dry(out.solver) && !shallow::more_to_come(out.solver, 0))
+    throw UnphysicalError("release.thickness", "no cell holds more than scheme.dry_depth and nothing flows in");
+  out.impact_depth =
+      observe.get_auto("arrival_depth", positive(), "length").value_or(std::max(arrival_part * h, 10 * dry));
+  observe.resolve("arrival_depth", out.impact_depth);
 }
 
 // Width of a channel at the faces of the grid, linear between the points (x, width).
@@ -73,7 +95,6 @@ void read_observers(const Section& s, ShallowInput& out) {
         item.fail("from", "the cross-section leaves the grid");
     out.sections.push_back({a[0], a[1], b[0], b[1]});
   }
-  out.impact_depth = s.get<double>("arrival_depth", 10 * out.solver.setup.scheme.dry_depth, positive(), "length");
 }
 
 ShallowInput read_unlocated(Case& input) {
@@ -105,17 +126,20 @@ ShallowInput read_unlocated(Case& input) {
 
   const Section release = root.child("release");
   const std::string shape = release.choose("shape", "none", {"none", "slab", "cap", "raster", "polygons"});
-  if (shape == "slab") scenario::fill_slab(release.read<scenario::Release>(), out.solver, out.state);
-  if (shape == "cap") scenario::fill_cap(release.read<scenario::Release>(), out.solver, out.state);
+  if (shape == "slab" || shape == "cap") {
+    const auto r = release.read<scenario::Release>();
+    shape == "slab" ? scenario::fill_slab(r, out.solver, out.state) : scenario::fill_cap(r, out.solver, out.state);
+    out.largest_thickness = r.thickness * (1 + r.perturbation);
+  }
   if (shape == "raster" || shape == "polygons") {
     if (!out.georeferenced) release.fail("shape", "a release from a file needs scenario.kind = \"terrain\"");
     release_on_terrain(input, release, out);
   }
+  read_depths(root.child("scheme"), root.child("observe"), out);
   read_observers(root.child("observe"), out);
   const auto time = root.child("time").read<TimeKeys>();
   out.end = time.end;
   out.stop_when_arrested = time.stop_when_arrested;
-  shallow::refresh(out.solver, out.state);
   return out;
 }
 

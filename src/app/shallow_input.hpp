@@ -27,8 +27,9 @@ struct ShallowInput {
   bool stop_when_arrested = false;
   std::vector<Gauge> gauges;
   std::vector<CrossSection> sections;
-  double impact_depth = 0;  // thicker than this counts as arrived
-  std::string projection;   // of the terrain; rasters are written when there is terrain
+  double impact_depth = 0;       // thicker than this counts as arrived
+  double largest_thickness = 0;  // of what is released and what flows in
+  std::string projection;        // of the terrain; rasters are written when there is terrain
   bool georeferenced = false;
 };
 

@@ -219,6 +219,10 @@ std::vector<double> inner(const shallow::Grid& g, const std::vector<double>& pad
   return out;
 }
 std::vector<double> bed_of(const ShallowInput& in) { return inner(in.solver.setup.grid, in.solver.bed); }
+io::ImageGrid image_of(const ShallowInput& in) {
+  const shallow::Grid& g = in.solver.setup.grid;
+  return {.origin = {g.x0, g.y0, 0}, .spacing = {g.dx, g.dy, 1}, .cells = {g.nx, g.ny, 1}, .time = in.state.time};
+}
 std::vector<double> mass_of(const ShallowInput& in) { return inner(in.solver.setup.grid, in.state.now.D); }
 }  // namespace
 
@@ -242,11 +246,10 @@ void write_shallow_snapshot(io::H5File& file, const std::string& group, const Sh
 }
 
 void write_shallow_vti(const std::filesystem::path& path, const ShallowInput& in, const ShallowMaps& m) {
-  const shallow::Grid& g = in.solver.setup.grid;
   const std::vector<double> bed = bed_of(in);
   std::vector<Vec3> velocity(m.h.size());
   for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] = {m.u[k], m.v[k], 0};
-  io::write_vti(path, {.origin = {g.x0, g.y0, 0}, .spacing = {g.dx, g.dy, 1}, .cells = {g.nx, g.ny, 1}},
+  io::write_vti(path, image_of(in),
                 {{"thickness", std::span<const double>(m.h)},
                  {"velocity", std::span<const Vec3>(velocity)},
                  {"bed", std::span<const double>(bed)}});
@@ -256,22 +259,22 @@ void write_shallow_results(const std::filesystem::path& directory, const Shallow
   const shallow::Grid& g = in.solver.setup.grid;
   const std::vector<double> bed = bed_of(in);
   if (!g.two_d()) {
-    std::vector<double> x;
+    std::vector<double> x, t(m.h.size(), in.state.time);
     for (int i = 0; i < g.nx; ++i) x.push_back(g.x(i));
     io::write_csv(directory / "final.csv",
                   {{"x", "length", "centre of the cell"},
                    {"bed", "length", "elevation of the bed"},
                    {"h", "length", "thickness at the end"},
                    {"u", "length/time", "velocity at the end"},
+                   {"t", "time", "time of h and u, and until when the largest values were sought"},
                    {"max_h", "length", "largest thickness"},
                    {"max_speed", "length/time", "largest speed"},
                    {"arrival", "time", "arrival"},
                    {"outside", "1", "1: closure used outside its range"}},
-                  {x, bed, m.h, m.u, m.max_h, m.max_speed, m.arrival, m.outside}, io::CsvHeader::names_and_units);
+                  {x, bed, m.h, m.u, t, m.max_h, m.max_speed, m.arrival, m.outside}, io::CsvHeader::names_and_units);
     return;
   }
-  io::write_vti(directory / "maps.vti",
-                {.origin = {g.x0, g.y0, 0}, .spacing = {g.dx, g.dy, 1}, .cells = {g.nx, g.ny, 1}},
+  io::write_vti(directory / "maps.vti", image_of(in),
                 {{"deposit", std::span<const double>(m.h)},
                  {"max_thickness", std::span<const double>(m.max_h)},
                  {"max_speed", std::span<const double>(m.max_speed)},
@@ -291,7 +294,8 @@ void write_shallow_results(const std::filesystem::path& directory, const Shallow
                                                                 .dx = g.dx,
                                                                 .dy = g.dy,
                                                                 .values = *values,
-                                                                .projection = in.projection});
+                                                                .projection = in.projection,
+                                                                .time = in.state.time});
 }
 
 }  // namespace bagnold::app

@@ -1,6 +1,7 @@
 // Terrain and releases from georeferenced files.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/shallow_input.hpp"
@@ -53,6 +54,7 @@ void release_on_terrain(const Case& input, const Section& s, ShallowInput& out) 
               "its grid ({} x {} cells of {} x {} at {}, {}) is not that of the terrain ({} x {} of {} x {} at {}, {})",
               r.nx, r.ny, r.dx, r.dy, r.x0, r.y0, g.nx, g.ny, g.dx, g.dy, g.x0, g.y0));
     for (std::size_t k = 0; k < h.size(); ++k) h[k] = std::isfinite(r.values[k]) ? r.values[k] : 0;
+    out.largest_thickness = *std::max_element(h.begin(), h.end());
   } else {
     const io::PolygonLayer layer = io::read_polygons(input.file(s, "polygons"));
     if (!io::same_projection(layer.projection, out.projection))
@@ -61,6 +63,7 @@ void release_on_terrain(const Case& input, const Section& s, ShallowInput& out) 
     for (const io::Polygon& p : layer.polygons) {
       const auto t = p.thickness ? p.thickness : thickness;
       if (!t) s.fail("thickness", "a polygon has no attribute \"thickness\"; give one for all here");
+      out.largest_thickness = std::max(out.largest_thickness, *t);
       for (const auto& ring : p.rings)
         for (const auto& q : ring)
           if (q[0] < g.x0 || q[0] > g.x0 + g.nx * g.dx || q[1] < g.y0 || q[1] > g.y0 + g.ny * g.dy)

@@ -32,6 +32,7 @@ Dataset open(const std::filesystem::path& path, unsigned kind) {
 }
 
 constexpr double no_data = -9999;
+constexpr const char* time_item = "TIME";
 
 }  // namespace
 
@@ -50,6 +51,7 @@ Raster read_raster(const std::filesystem::path& path) {
   const bool north_up = t[5] < 0;
   r.y0 = north_up ? t[3] - r.dy * r.ny : t[3];
   r.projection = data->GetProjectionRef();
+  if (const char* time = data->GetMetadataItem(time_item)) r.time = CPLAtof(time);
   GDALRasterBand* band = data->GetRasterBand(1);
   std::vector<double> rows(static_cast<std::size_t>(r.nx) * static_cast<std::size_t>(r.ny));
   if (band->RasterIO(GF_Read, 0, 0, r.nx, r.ny, rows.data(), r.nx, r.ny, GDT_Float64, 0, 0) != CE_None)
@@ -78,6 +80,7 @@ void write_raster(const std::filesystem::path& path, const Raster& r) {
   double t[6] = {r.x0, r.dx, 0, r.y0 + r.dy * r.ny, 0, -r.dy};
   data->SetGeoTransform(t);
   if (!r.projection.empty()) data->SetProjection(r.projection.c_str());
+  if (r.time && !ascii) data->SetMetadataItem(time_item, fmt::format("{}", *r.time).c_str());
   GDALRasterBand* band = data->GetRasterBand(1);
   band->SetNoDataValue(no_data);
   std::vector<double> row(static_cast<std::size_t>(r.nx));

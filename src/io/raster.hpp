@@ -14,6 +14,7 @@ struct Raster {
   double x0 = 0, y0 = 0, dx = 1, dy = 1;
   std::vector<double> values;  // values[j * nx + i]
   std::string projection;      // WKT; empty when the file has none
+  std::optional<double> time;  // of what it shows: metadata item TIME of the file (GeoTIFF only)
 };
 
 // First band of any raster GDAL can read (GeoTIFF, ESRI ASCII grid, ...). Throws IoError when it cannot be opened,

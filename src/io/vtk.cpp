@@ -141,9 +141,15 @@ void write_vtp_lines(const std::filesystem::path& path, std::span<const std::arr
 }
 
 void write_vti(const std::filesystem::path& path, const ImageGrid& grid, const std::vector<VtkArray>& cell_data) {
-  const auto& [origin, spacing, cells] = grid;
+  const auto& [origin, spacing, cells, time] = grid;
   const auto extent = fmt::format("0 {} 0 {} 0 {}", cells[0], cells[1], cells[2]);
-  std::string xml = fmt::format("<Piece Extent=\"{}\">\n", extent);
+  std::string xml;
+  if (time)
+    xml = fmt::format(
+        "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"
+        "</DataArray>\n</FieldData>\n",
+        *time);
+  fmt::format_to(std::back_inserter(xml), "<Piece Extent=\"{}\">\n", extent);
   append_data(xml, "CellData", cell_data, static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), path);
   xml += "</Piece>\n";
   write_file(path, document("ImageData",

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -37,6 +38,7 @@ struct ImageGrid {
   Vec3 origin;   // corner of the first cell
   Vec3 spacing;  // size of a cell
   std::array<std::int64_t, 3> cells;
+  std::optional<double> time = std::nullopt;  // written as TimeValue, which ParaView shows
 };
 void write_vti(const std::filesystem::path& path, const ImageGrid& grid, const std::vector<VtkArray>& cell_data);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/last_step.hpp"
 #include "shallow/solver.hpp"
 
 namespace bagnold::shallow {
@@ -32,7 +33,7 @@ void book_crossings(const Solver& s, State& state, double dt) {
 
 }  // namespace
 
-void advance_one_step(Solver& s, State& state) {
+void advance_one_step(Solver& s, State& state, double end) {
   const Scheme& scheme = s.setup.scheme;
   const auto step_for = [&](double rate) {
     return rate > 0 ? std::min(scheme.cfl / rate, scheme.max_step) : scheme.max_step;
@@ -40,6 +41,9 @@ void advance_one_step(Solver& s, State& state) {
   double dt = state.next_step;
   fill_ghosts(s, state.now, state.time);
   if (!(dt > 0)) dt = step_for(both_stages(s, state, 0)[0].rate);
+  const double stop = std::min(end, next_turn(s, state.time, dt));
+  const StepLength planned = step_towards(stop, state.time, dt);
+  dt = planned.dt;
   StepResult done;
   for (int attempt = 0;; ++attempt) {
     done = both_stages(s, state, dt);
@@ -51,16 +55,19 @@ void advance_one_step(Solver& s, State& state) {
   }
   std::swap(state.now, s.next);
   book_crossings(s, state, dt);
-  state.time += dt;
+  const bool as_planned = dt == planned.dt;
+  state.time = planned.last && as_planned ? stop : state.time + dt;
   ++state.step;
   state.cell_updates += static_cast<double>(done[1].wet);
-  state.smallest_step = state.step == 1 ? dt : std::min(state.smallest_step, dt);
-  state.next_step = step_for(done[1].rate);
+  if (state.smallest_step == 0 || !(planned.shortened && as_planned))
+    state.smallest_step = state.smallest_step == 0 ? dt : std::min(state.smallest_step, dt);
+  // Without waves in the prediction there may still be some in the result, just thick enough to move: look again.
+  state.next_step = done[1].rate > 0 ? step_for(done[1].rate) : 0;
   find_active_tiles(s, state);
 }
 
-void advance(Solver& s, State& state, double until) {
-  while (state.time < until * (1 - 1e-14)) advance_one_step(s, state);
+void advance(Solver& s, State& state, double until, double end) {
+  while (state.time < until * (1 - 1e-14)) advance_one_step(s, state, end);
 }
 
 }  // namespace bagnold::shallow

@@ -6,6 +6,8 @@
 namespace bagnold::shallow {
 namespace {
 
+constexpr double fewest_steps = 10;  // in a piece of a hydrograph, for its ends not to matter
+
 double interpolate(const std::vector<double>& t, const std::vector<double>& y, double at) {
   if (at <= t.front()) return y.front();
   if (at >= t.back()) return y.back();
@@ -74,6 +76,30 @@ void fill_side(const Solver& s, Side side, double time, int lo, int hi, int dept
                   });
     }
   }
+}
+
+double next_turn(const Solver& s, double time, double dt) {
+  double turn = never;
+  for (const Boundary& b : s.setup.boundary) {
+    if (b.kind != BoundaryKind::inflow) continue;
+    const std::vector<double>& t = b.inflow.t;
+    const auto next = std::upper_bound(t.begin(), t.end(), time);
+    if (next == t.end() || time + dt <= *next) continue;
+    const double before = next == t.begin() ? never : *next - *(next - 1),
+                 after = next + 1 == t.end() ? never : *(next + 1) - *next;
+    if (fewest_steps * dt > std::min(before, after)) turn = std::min(turn, *next);
+  }
+  return turn;
+}
+
+bool more_to_come(const Solver& s, double time) {
+  return std::any_of(s.setup.boundary.begin(), s.setup.boundary.end(), [&](const Boundary& b) {
+    if (b.kind != BoundaryKind::inflow) return false;
+    const Hydrograph& q = b.inflow;
+    bool comes = interpolate(q.t, q.h, time) > 0;
+    for (std::size_t k = 0; k < q.t.size(); ++k) comes |= q.t[k] > time && q.h[k] > 0;
+    return comes;
+  });
 }
 
 void fill_ghosts(const Solver& s, Conserved& now, double time) {

@@ -115,6 +115,11 @@ Solver make_solver(Definition setup) {
   return s;
 }
 
+void set_dry_depth(Solver& s, double depth) {
+  s.setup.scheme.dry_depth = depth;
+  s.closure.dry_density_depth = depth * s.closure.rho;
+}
+
 State empty_state(const Solver& s) {
   State state;
   const auto size = static_cast<std::size_t>(s.setup.grid.padded());

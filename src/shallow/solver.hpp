@@ -1,6 +1,7 @@
 // The shallow-layer solver: Weinhart et al. 2012, eq. 34, by a second-order finite-volume method.
 #pragma once
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -8,6 +9,8 @@
 #include "shallow/state.hpp"
 
 namespace bagnold::shallow {
+
+constexpr double never = std::numeric_limits<double>::infinity();
 
 // What is learnt from a stage.
 struct StageResult {
@@ -46,6 +49,8 @@ struct Solver {
 
 // Throws UnphysicalError for a set-up that means nothing (sizes, gravity, CFL, periodic sides that do not pair, ...).
 Solver make_solver(Definition setup);
+// Of a solver whose state has not been stepped yet; refresh() it then.
+void set_dry_depth(Solver& solver, double depth);
 // A state at rest without mass, sized for the solver.
 State empty_state(const Solver& solver);
 // Sets cell (i, j) to thickness h and velocity (u, v): D = rho(h, u) h.
@@ -63,18 +68,25 @@ void view_row(const Solver& solver, const State& state, int j, std::vector<doubl
 
 // Call after the state has been set or restored: finds the wet cells.
 void refresh(Solver& solver, State& state);
-// One step of SSP-RK2 (Heun) of the size the CFL number allows. Throws NumericalError naming cell and time.
-void advance_one_step(Solver& solver, State& state);
-void advance(Solver& solver, State& state, double until);  // steps until time >= until; never shortens a step
+// One step of SSP-RK2 (Heun) of the size the CFL number allows; the last two before `end` share what is left, so that it
+// is met exactly. Throws NumericalError naming cell and time.
+void advance_one_step(Solver& solver, State& state, double end = never);
+// Steps until time >= until, and to `end` at most; shortens no step for `until`.
+void advance(Solver& solver, State& state, double until, double end = never);
 
 double total_mass(const Solver& solver, const State& state);    // compensated sum over all cells, in order
 double mass_crossed(const Solver& solver, const State& state);  // that left through the boundaries so far (out > 0)
 bool at_rest(const Solver& solver, const State& state);         // every cell exactly at rest
+bool is_dry(const Solver& solver);                              // no cell is thicker than dry_depth
+bool more_to_come(const Solver& solver, double time);           // some inflow has a thickness at `time` or later
 
 // ---- used by advance_one_step ------------------------------------------------------------------------------------
 // Both stages from state.now to next. Ghosts of state.now must be filled.
 StepResult both_stages(Solver& solver, const State& state, double dt);
 void fill_ghosts(const Solver& solver, Conserved& now, double time);
+// The next point of a hydrograph that a step of dt would pass although a piece beside it is not much longer: to be met, so
+// that no pulse is missed. Else never.
+double next_turn(const Solver& solver, double time, double dt);
 // `depth` ghosts beyond one side, along the cells lo ... hi - 1.
 void fill_side(const Solver& solver, Side side, double time, int lo, int hi, int depth, const Window& u);
 void fill_bed_ghosts(const Solver& solver, std::vector<double>& bed);

@@ -34,7 +34,7 @@ struct State {
   Conserved now;
   double time = 0, next_step = 0;  // next_step <= 0: not known yet
   std::int64_t step = 0;
-  double smallest_step = 0;        // of all steps taken; 0 before the first
+  double smallest_step = 0;        // of those not shortened to meet a given time; 0 before the first
   double cell_updates = 0;         // wet cells times steps
   std::vector<double> crossed[4];  // mass that left through each boundary face so far, by Side
 };

@@ -227,8 +227,18 @@ typename Sweep<G>::Rates Sweep<G>::rates(int j, int k) const {
   const Pack D = at(row.rho) * at(row.h), ax = A.inverse * inv_dx_, ay = A.inverse * inv_dy_;
   Rates r;
   r.D = ax * (A.west * at(X.mass - 1) - A.east * at(X.mass)) + ay * (A.south * at(S.mass) - A.north * at(N.mass));
-  Pack push_x = A.west * at(x_after - 1) - A.east * at(X.before),
-       push_y = A.south * at(y_after) - A.north * at(N.before);
+  Pack west = at(x_after - 1), east = at(X.before), south = at(y_after), north = at(N.before);
+  const auto locked = [&](const double* face) { return at(face) > 0.0; };
+  if (row.any_rest) {
+    // Friction holds what presses on a locked face: a dry cell behind it feels nothing. (The little that comes in
+    // through another face would be thrown.)
+    const Mask dry = !(at(row.h) > 0.0);
+    west = select(dry & locked(X.locked - 1), 0.0, west);
+    east = select(dry & locked(X.locked), 0.0, east);
+    south = select(dry & locked(S.locked), 0.0, south);
+    north = select(dry & locked(N.locked), 0.0, north);
+  }
+  Pack push_x = A.west * west - A.east * east, push_y = A.south * south - A.north * north;
   if constexpr (!flat) {
     const Pack half_P = 0.5 * g * at(row.K) * D * at(row.h) * A.c;
     push_x = push_x + half_P * A.metric_x * (A.east - A.west);

@@ -93,6 +93,10 @@ double mass_crossed(const Solver&, const State& state) {
   return sum;
 }
 
+bool is_dry(const Solver& s) {
+  return std::all_of(s.wet_boxes.begin(), s.wet_boxes.end(), [](const Tile& box) { return box.empty(); });
+}
+
 bool at_rest(const Solver& s, const State& state) {
   for (const int tile : s.active) {  // elsewhere it is dry
     const Tile& box = s.boxes[static_cast<std::size_t>(tile)];

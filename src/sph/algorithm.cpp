@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/last_step.hpp"
 #include "core/parallel.hpp"
 #include "sph/constitutive.hpp"
 #include "sph/energy.hpp"
@@ -261,22 +262,23 @@ void refresh(const State& state, Work& w, const Model& model) {
   constitutive(w, copy, model);
 }
 
-void step(State& state, Work& w, const Model& model) {
+void step(State& state, Work& w, const Model& model, double end) {
   const double speed = fastest_particle(state, model);
   double dt = step_limit(state, model);
   if (model.stepping != Stepping::minatti2015) {
     if (speed > 0) dt = std::min(dt, advective_cfl * model.h() / speed);
     dt = std::min(dt, state.dt > 0 ? step_growth * state.dt : first_step * dt);
   }
-  state.dt = dt;
   const double travel = list_steps * speed * dt;
+  const StepLength planned = step_towards(end, state.time, dt);
+  state.dt = planned.dt;
   const std::int64_t applications = w.applications;
   if (model.stepping == Stepping::minatti2015)
     midpoint_step(state, w, model, travel);
   else
     sequential_step(state, w, model, travel);
   state.force_evaluations += w.applications - applications;
-  state.time += dt;
+  state.time = planned.last ? end : state.time + planned.dt;
   ++state.step;
 }
 

@@ -50,6 +50,11 @@ TEST(Raster, GeoTiffComesBackExactly) {
   const Raster r = read_raster(scratch / "a.tif");
   expect_same(r, sample(), 0);
   EXPECT_TRUE(same_projection(r.projection, utm32));
+  EXPECT_FALSE(r.time.has_value());
+  Raster later = sample();
+  later.time = 4.98;
+  write_raster(scratch / "later.tif", later);
+  EXPECT_EQ(read_raster(scratch / "later.tif").time, 4.98);
 }
 
 TEST(Raster, EsriAsciiComesBackWithItsProjectionBesideIt) {

@@ -86,6 +86,11 @@ TEST(Vtk, Grids) {
   auto xml = read_file(dir / "h.vti");
   EXPECT_TRUE(contains(xml, "WholeExtent=\"0 3 0 2 0 1\" Origin=\"0 1 0\" Spacing=\"0.5 0.5 1\""));
   EXPECT_EQ(decode<double>(xml, "Float64", "h"), h);
+  EXPECT_FALSE(contains(xml, "TimeValue"));
+  write_vti(dir / "t.vti", {.origin = {}, .spacing = {1, 1, 1}, .cells = {3, 2, 1}, .time = 4.98}, {{"h", h}});
+  xml = read_file(dir / "t.vti");
+  EXPECT_TRUE(contains(xml, "Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">4.98<"));
+  EXPECT_LT(xml.find("<FieldData>"), xml.find("<Piece"));
   std::vector<Vec3> nodes;
   for (int k = 0; k < 6; ++k) nodes.push_back({double(k % 3), double(k / 3), 0.1 * k});
   write_vts(dir / "s.vts", {3, 2, 1}, nodes, {{"h", h}});
