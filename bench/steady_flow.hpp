@@ -17,7 +17,7 @@ inline std::vector<Grain> steady_flow() {
   if (read(file).empty()) {
     fmt::print("running cases/chute.toml to t = 200, once ...\n");
     config::Case input = config::Case::from_file(BAGNOLD_CASES "/chute.toml");
-    app::DemInput chute = app::read_dem(input);
+    app::DemInput chute = app::build_dem(app::read_dem(input));
     advance(chute.state, chute.laws, 2'000'000);
     write(file, grains_of(chute.state));
   }

@@ -21,6 +21,7 @@ nlohmann-json3-dev                          # summary.json
 libhdf5-dev                                 # run.h5, checkpoint.h5
 libeigen3-dev libceres-dev                  # least squares of the closures
 libgdal-dev                                 # elevation rasters
+nettle-dev                                  # SHA-256, the names of settled beds
 libgtest-dev librapidcheck-dev              # tests
 libbenchmark-dev                            # benchmarks
 gnuplot-nox                                 # figures of the report

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/signals.hpp"
 #include "app/verbs.hpp"
 #include "core/error.hpp"
 #include "core/variant.hpp"
@@ -36,6 +37,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     cli.exit(error);
     return 2;
+  } catch (const Interrupted& interrupted) {
+    fmt::print(stderr, "{}\n", interrupted.what());
+    return 75;
   } catch (const InputError& error) {  // its text says where, and "error:"
     fmt::print(stderr, "{}\n", error.what());
     return 2;

@@ -43,6 +43,11 @@ cg::FlowSetting setting_of(const DemInput& in) { return {in.state.gravity, in.di
 
 }  // namespace
 
+void DemFlow::read(const config::Section& cg) {
+  (void)cg.read<CgKeys>();
+  (void)cg.choose("kernel", "gaussian", laws::CgKernels::names());
+}
+
 DemFlow::DemFlow(const config::Section& section, const DemInput& in)
     : options_(read_options(section, in)),
       observer_(options_, in.state.box),

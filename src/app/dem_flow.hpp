@@ -33,7 +33,8 @@ struct CgKeys {
 
 class DemFlow {
  public:
-  // Reads [cg]. `in` is prepared. Throws InputError at the place of a key that makes no sense.
+  static void read(const config::Section& cg);  // asks for every key of [cg] before there is anything to build from
+  // From [cg] and what was built. Throws InputError at the place of a key that makes no sense.
   DemFlow(const config::Section& cg, const DemInput& in);
 
   dem::Watch watch(const DemInput& in) { return observer_.watch(in.laws); }  // for every step

@@ -1,15 +1,10 @@
 #include "app/dem_input.hpp"
 
-#include <fmt/format.h>
+#include <type_traits>
 
-#include <algorithm>
-#include <cmath>
-
-#include "app/bed_store.hpp"
 #include "app/dem_flow.hpp"
 #include "app/topics.hpp"
 #include "core/error.hpp"
-#include "scenario/granular.hpp"
 
 namespace bagnold::app {
 
@@ -54,97 +49,57 @@ dem::ContactModel read_contacts(const Section& contact) {
   return model;
 }
 
-std::vector<Vec3> stored_base(double length, double width, double base_diameter, std::uint64_t seed) {
-  if (base_diameter == 0) return {};
-  return scenario::cut_base(stored_bed(scenario::base_recipe(length, width, base_diameter, seed)));
-}
-
-void read_scenario(const Section& section, const scenario::GrainMaterial& material, std::uint64_t seed, DemInput& out) {
+void read_scenario(const Section& section, DemKeys& out) {
   out.scenario = section.choose("kind", std::nullopt, {"chute", "avalanche", "column", "heap", "grains"});
-  const double d = material.diameter;
-  const auto patch_of = [&](double ratio) {
-    return stored_base(scenario::base_patch * ratio * d, scenario::base_patch * ratio * d, ratio * d, seed);
-  };
   if (out.scenario == "chute") {
-    const auto chute = section.read<scenario::Chute>();
-    out.angle_deg = chute.angle_deg;
-    out.base_size_ratio = chute.base_size_ratio;
-    out.fill_height = chute.fill_height;
-    scenario::check_chute(chute, material);  // before the base is built
-    out.state = scenario::make_chute(chute, material,
-                                     stored_base(chute.length, chute.width, chute.base_size_ratio * d, seed), seed);
+    out.setting = section.read<scenario::Chute>();
   } else if (out.scenario == "avalanche") {
-    const auto avalanche = section.read<scenario::Avalanche>();
-    scenario::check_avalanche(avalanche, material);
-    const double base = avalanche.base_size_ratio * d;
-    out.state = scenario::make_avalanche(avalanche, material,
-                                         stored_base(scenario::avalanche_patch * base, avalanche.width, base, seed),
-                                         stored_bed(scenario::avalanche_recipe(avalanche, material, seed)));
+    out.setting = section.read<scenario::Avalanche>();
   } else if (out.scenario == "column") {
-    const auto column = section.read<scenario::Column>();
-    out.column_radius = column.radius;
-    out.column_height = column.height;
-    out.state = scenario::make_column(column, material, patch_of(column.base_size_ratio),
-                                      stored_bed(scenario::column_recipe(column, material, seed)));
+    out.setting = section.read<scenario::Column>();
   } else if (out.scenario == "heap") {
-    const auto heap = section.read<scenario::Heap>();
-    out.column_radius = heap.radius;
-    out.state = scenario::make_heap(heap, material, patch_of(heap.base_size_ratio), seed);
+    out.setting = section.read<scenario::Heap>();
   } else {
-    std::vector<scenario::SingleGrain> grains;
-    std::vector<scenario::SingleWall> walls;
-    for (const Section& item : section.list("grains")) grains.push_back(item.read<scenario::SingleGrain>());
-    for (const Section& item : section.list("walls")) walls.push_back(item.read<scenario::SingleWall>());
-    out.state = scenario::make_singles(section.read<scenario::Singles>(), grains, walls, material);
+    SinglesKeys keys{section.read<scenario::Singles>(), {}, {}};
+    for (const Section& item : section.list("grains")) keys.grains.push_back(item.read<scenario::SingleGrain>());
+    for (const Section& item : section.list("walls")) keys.walls.push_back(item.read<scenario::SingleWall>());
+    out.setting = keys;
   }
-  out.gravity = norm(out.state.gravity);
+  std::visit(
+      [&](const auto& setting) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(setting)>, SinglesKeys>)
+          scenario::check(setting, out.material);
+      },
+      out.setting);
 }
 
-// That of the limiting pair; exactly collision_time/50 where that is the input.
-double automatic_step(const DemInput& in) {
-  if (const auto* linear = std::get_if<laws::Linear>(&in.model.pairs.front().normal))
-    if (linear->collision_time && std::abs(*linear->collision_time / (50 * in.limit.step) - 1) < 1e-12)
-      return *linear->collision_time / 50;
-  return in.limit.step;
+void read_bed(const Section& section, DemKeys& out) {
+  out.bed = section.read<BedKeys>();
+  if (out.bed.bed != "auto") out.bed.bed = out.input->file(section, "bed");
 }
 
-DemInput read_unlocated(config::Case& input) {
+DemKeys read_unlocated(config::Case& input) {
   const Section root = input.root();
-  DemInput out;
-  const auto seed = static_cast<std::uint64_t>(root.get<std::int64_t>("seed", 1, at_least(0)));
-  const auto material = root.child("grains").read<scenario::GrainMaterial>();
-  out.diameter = material.diameter;
-  out.density = material.density;
-  out.model = read_contacts(root.child("contact"));
-  const Section time_section = root.child("time");
-  const auto time = time_section.read<DemTime>();
-  out.end = time.end;
-
-  read_scenario(root.child("scenario"), material, seed, out);
-  out.stop_when_arrested = time.stop_when_arrested;
-  if (out.scenario == "grains" && !time_section.has("stop_when_arrested"))
-    time_section.resolve("stop_when_arrested", out.stop_when_arrested = false);
-  out.state.keep_ledger = root.child("output").get<bool>("energy_ledger", out.scenario == "grains");
-
-  out.laws = dem::compile(out.model, dem::mean_pair_mass(out.state.grains));
-  out.limit = dem::step_limit(out.state, out.model);
-  out.state.dt = time.step ? *time.step : automatic_step(out);
-  time_section.resolve("step", out.state.dt);
-  try {
-    dem::prepare(out.state, out.laws);
-  } catch (const NumericalError& error) {  // no step has been taken: the start itself is wrong
-    input.fail("scenario", error.what());
-  }
-  for (const dem::Finding& finding : dem::physical_findings(out.state, out.model)) {
-    if (finding.error) input.fail(finding.key, finding.text);
-    out.warnings.push_back(finding.key + ": " + finding.text);
-  }
+  DemKeys out;
+  out.input = &input;
+  out.seed = static_cast<std::uint64_t>(root.get<std::int64_t>("seed", 1, at_least(0)));
+  out.material = root.child("grains").read<scenario::GrainMaterial>();
+  out.contacts = read_contacts(root.child("contact"));
+  (void)dem::compile(out.contacts, 1);  // refuses what no mass can make right
+  const Section time = root.child("time"), section = root.child("scenario");
+  out.time = time.read<DemTime>();
+  read_scenario(section, out);
+  if (out.scenario == "grains" && !time.has("stop_when_arrested"))
+    time.resolve("stop_when_arrested", out.time.stop_when_arrested = false);
+  if (!bed_recipes(out).empty()) read_bed(section, out);
+  if (out.scenario == "chute") DemFlow::read(root.child("cg"));
+  out.energy_ledger = root.child("output").get<bool>("energy_ledger", out.scenario == "grains");
   return out;
 }
 
 }  // namespace
 
-DemInput read_dem(config::Case& input) {
+DemKeys read_dem(config::Case& input) {
   try {
     return read_unlocated(input);
   } catch (const UnphysicalError& error) {
@@ -159,6 +114,7 @@ void add_dem_topics(std::vector<Topic>& topics) {
   topics.push_back(topic<scenario::Heap>("scenario of model dem"));
   topics.push_back(topic<scenario::Singles>("scenario of model dem"));
   topics.push_back(topic<scenario::GrainMaterial>("section of model dem"));
+  topics.push_back(topic<BedKeys>("scenario of model dem"));
   topics.push_back(topic<DemTime>("section of model dem"));
   topics.push_back(topic<CgKeys>("section of model dem"));
   add_registry<laws::NormalLaws>(topics, "normal contact law, contact.normal");

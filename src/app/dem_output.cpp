@@ -6,9 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/cost.hpp"
 #include "core/mass_quantile.hpp"
 #include "dem/contacts.hpp"
 #include "dem/energy.hpp"
+#include "dem/engine_name.hpp"
 #include "io/hdf5.hpp"
 #include "io/vtk.hpp"
 
@@ -240,20 +242,41 @@ std::vector<Derived> dem_derived(const DemInput& in) {
         {"  kt, gamma_t, mu", fmt::format("{:.6g}, {:.6g}, {:.6g}", type.kt, type.gamma_t, type.mu), "tangential"});
   }
   const dem::Grains& g = in.state.grains;
-  const double steps = std::ceil(in.end / in.state.dt - 1e-6), grain_steps = steps * static_cast<double>(g.flowing);
-  const double state_mb = static_cast<double>(g.size()) * 190e-6 + static_cast<double>(g.flowing) * 2 * 80e-6;
   const dem::StepLimit& limit = in.limit;
   out.push_back({"time step", number(in.state.dt),
                  limit.by_dashpots() ? fmt::format("{:.3g} of the largest stable step of {}",
                                                    in.state.dt / limit.stable, to_string(limit))
                                      : fmt::format("tc/{:.4g} of {}", limit.tc / in.state.dt, to_string(limit))});
-  out.push_back({"steps", fmt::format("{:.0f}", steps), ""});
-  out.push_back({"grains", fmt::format("{} + {} fixed", g.flowing, g.size() - g.flowing), "flowing + base"});
-  out.push_back({"grain-steps", fmt::format("{:.3g}", grain_steps),
-                 "at 3e7 per second and core: " + fmt::format("{:.0f} core-seconds", grain_steps / 3e7)});
-  out.push_back({"memory", fmt::format("{:.1f} MB", static_cast<double>(g.size()) * 600e-6), "about"});
-  out.push_back({"disk", fmt::format("{:.2f} MB", state_mb), "per snapshot, ParaView file or checkpoint, about"});
+  out.push_back({"steps", fmt::format("{:.0f}", std::ceil(in.end / in.state.dt - 1e-6)), ""});
+  const std::int64_t fixed = g.size() - g.flowing;
+  if (in.unsettled.empty()) {
+    out.push_back({"grains", fmt::format("{} + {} fixed", g.flowing, fixed), "flowing + base"});
+    if (!in.beds.empty()) out.push_back({"bed", in.bed_hash.substr(0, 16), "its hash begins so"});
+    return out;
+  }
+  const std::string flowing = in.scenario == "avalanche" || in.scenario == "column" ? "about " : "";
+  out.push_back({"grains", fmt::format("{}{} + about {} fixed", flowing, g.flowing, fixed),
+                 "flowing + base; estimated, for the bed is not settled yet"});
+  for (const scenario::BedRecipe& recipe : in.unsettled)
+    out.push_back({"bed", fmt::format("{} grains", scenario::bed_grains(recipe)),
+                   "not settled yet; the first time " + time_text(bed_cost(recipe), "bed")});
   return out;
+}
+
+// By memory, a grain and a listed pair; by file, the arrays of a snapshot, of its ParaView files and of a checkpoint.
+Cost dem_cost(const DemInput& in) {
+  const auto size = static_cast<double>(in.state.grains.size()), flowing = static_cast<double>(in.state.grains.flowing);
+  const double contacts = 2.2 * flowing;
+  return {.elements = "grain",
+          .engine = std::string(dem::engine_name(in.state)),
+          .count = flowing,
+          .element_steps = std::ceil(in.end / in.state.dt - 1e-6) * flowing,
+          .usual_speed = dem::engine_name(in.state) == "fast" ? 2e7 : 4e6,
+          .memory_mb = size * 600e-6,
+          .snapshot_mb = (size * 192 + contacts * 136) * 1e-6,
+          .vtk_mb = (size * 210 + contacts * 120) * 1e-6,
+          .checkpoint_mb = (size * 230 + contacts * 70) * 1e-6,
+          .estimated = !in.unsettled.empty()};
 }
 
 }  // namespace bagnold::app

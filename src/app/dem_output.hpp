@@ -22,5 +22,6 @@ std::vector<std::pair<std::string, std::string>> write_dem_vtk(const std::filesy
                                                                const std::vector<dem::Contact>& contacts);
 void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double initial_energy);
 std::vector<Derived> dem_derived(const DemInput& in);
+Cost dem_cost(const DemInput& in);
 
 }  // namespace bagnold::app

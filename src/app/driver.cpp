@@ -7,8 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/signals.hpp"
+#include "config/case.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
@@ -47,8 +49,7 @@ class Run {
     series_ = context.resume ? io::CsvWriter::resume(dir() / "series.csv", columns, model.time())
                              : io::CsvWriter::create(dir() / "series.csv", columns);
     if (!context.resume) {
-      auto file = io::H5File::create(dir() / "run.h5");
-      io::write_provenance(file, provenance_);
+      create_file();
       write_due();
       checkpoint();
     }
@@ -74,7 +75,9 @@ class Run {
 
   void checkpoint() {
     wall_s_ += seconds_since(segment_);
+    cpu_s_ += cpu_seconds() - segment_cpu_;
     segment_ = Clock::now();
+    segment_cpu_ = cpu_seconds();
     io::write_checkpoint(dir(), state(), provenance_);
   }
   double seconds_since_checkpoint() const { return seconds_since(segment_); }
@@ -89,7 +92,9 @@ class Run {
     summary["status"] = status;
     summary["seed"] = context_.seed;
     summary["threads"] = threads();
+    summary["variant"] = simd_variant();
     summary["wall_s"] = wall_s_ + seconds_since(segment_);
+    summary["cpu_s"] = cpu_s_ + cpu_seconds() - segment_cpu_;
     summary["steps"] = model_.step();
     summary["time"] = model_.time();
     model_.add_summary(summary, seconds_since(start_));
@@ -108,6 +113,7 @@ class Run {
     arrays.push_back({"driver/snapshot_number", &snapshot_number_});
     arrays.push_back({"driver/vtk_number", &vtk_number_});
     arrays.push_back({"driver/wall_s", &wall_s_});
+    arrays.push_back({"driver/cpu_s", &cpu_s_});
     return arrays;
   }
 
@@ -115,10 +121,14 @@ class Run {
     const auto from = io::read_checkpoint(dir(), state());
     if (from.previous) fmt::print(stderr, "warning: {}: using {}\n", from.damage, from.file.string());
     model_.restored();
-    if (!std::filesystem::exists(dir() / "run.h5")) {
-      auto file = io::H5File::create(dir() / "run.h5");
-      io::write_provenance(file, provenance_);
-    }
+    if (!std::filesystem::exists(dir() / "run.h5")) create_file();
+  }
+
+  void create_file() {
+    auto file = io::H5File::create(dir() / "run.h5");
+    io::write_provenance(file, provenance_);
+    model_.write_origin(file);
+    file.close();
   }
 
   void snapshot() {
@@ -150,7 +160,8 @@ class Run {
   std::int64_t snapshot_number_ = 0, vtk_number_ = 0;
   std::optional<io::CsvWriter> series_;
   std::map<std::string, io::PvdSeries> collections_;
-  double wall_s_ = 0;  // of the whole run up to the last checkpoint
+  double wall_s_ = 0, cpu_s_ = 0;  // of the whole run up to the last checkpoint
+  double segment_cpu_ = cpu_seconds();
   Clock::time_point start_ = Clock::now(), segment_ = Clock::now();
 };
 
@@ -172,6 +183,18 @@ void advance(Model& model, Run& run, Progress& progress, const RunContext& conte
 }
 
 }  // namespace
+
+OutputSettings read_output(const config::Section& section, double end) {
+  auto output = section.read<OutputSettings>();
+  const auto settle = [&](std::optional<double>& every, const char* key, double parts) {
+    if (!every) every = end / parts;
+    section.resolve(key, *every);
+  };
+  settle(output.series_every, "series_every", 1000);
+  settle(output.snapshot_every, "snapshot_every", 10);
+  settle(output.vtk_every, "vtk_every", 20);
+  return output;
+}
 
 int drive(Model& model, const RunContext& context) {
   catch_signals();

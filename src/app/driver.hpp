@@ -10,6 +10,10 @@
 #include "app/model.hpp"
 #include "core/fields.hpp"
 
+namespace bagnold::config {
+class Section;
+}
+
 namespace bagnold::app {
 
 // [output]: intervals are in the case's unit of time; what is "auto" divides the whole run.
@@ -29,6 +33,9 @@ struct OutputSettings {
                             &OutputSettings::checkpoint_every_s, positive())};
   }
 };
+
+// With "auto" replaced by what it amounts to, also in the resolved case.
+OutputSettings read_output(const config::Section& output, double end);
 
 struct RunContext {
   std::filesystem::path directory;

@@ -19,19 +19,23 @@ namespace {
 
 class DemModel final : public Model {
  public:
-  DemModel(DemInput input, std::optional<DemFlow> flow)
-      : in_(std::move(input)), flow_(std::move(flow)), initial_energy_(dem::energies(in_.state, in_.laws).total()) {
+  explicit DemModel(DemKeys keys) : keys_(std::move(keys)) {}
+
+  void build(const Building& how) override {
+    in_ = build_dem(keys_, how);
     for (const std::string& warning : in_.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    if (in_.scenario == "chute") flow_.emplace(keys_.input->root().child("cg"), in_);
     if (in_.gravity > 0) {
       const double unit = std::sqrt(in_.diameter / in_.gravity);
       arrest_check_ = std::max<std::int64_t>(1, std::llround(0.5 * unit / in_.state.dt));
       arrest_from_ = 10 * unit;
     }
+    if (!how.estimate) initial_energy_ = dem::energies(in_.state, in_.laws).total();
   }
 
-  std::string_view scenario() const override { return in_.scenario; }
+  std::string_view scenario() const override { return keys_.scenario; }
   double time() const override { return in_.state.time(); }
-  double end_time() const override { return in_.end; }
+  double end_time() const override { return keys_.time.end; }
   std::int64_t step() const override { return in_.state.step; }
   double element_steps() const override { return grain_steps_; }
 
@@ -76,6 +80,9 @@ class DemModel final : public Model {
     return fmt::format("E_kin/E_ela {:.3g}", e.kinetic() / e.elastic());
   }
 
+  void write_origin(io::H5File& file) override {
+    for (const auto& [name, bed] : in_.beds) write_bed(file, name, bed);
+  }
   void write_snapshot(io::H5File& file, const std::string& group) override {
     dem::list_contacts(in_.state, in_.laws, contacts_);
     write_dem_snapshot(file, group, in_.state, contacts_);
@@ -94,11 +101,13 @@ class DemModel final : public Model {
     summary["base_grains"] = in_.state.grains.size() - in_.state.grains.flowing;
     summary["particle_steps_per_s"] = wall_s > 0 ? grain_steps_ / wall_s : NAN;
     summary["list_rebuilds"] = in_.state.rebuilds;
+    if (!in_.beds.empty()) summary["bed_hash"] = in_.bed_hash;
     add_dem_summary(summary, in_, initial_energy_);
     if (flow_) flow_->add_summary(summary, in_);
   }
 
   std::vector<Derived> derived() override { return dem_derived(in_); }
+  Cost cost() override { return dem_cost(in_); }
 
  private:
   void check_arrest() {
@@ -106,9 +115,10 @@ class DemModel final : public Model {
     arrested_ = e.kinetic() < 1e-5 * e.elastic() ? 1 : 0;  // Weinhart et al. 2012, section 6
   }
 
+  DemKeys keys_;
   DemInput in_;
   std::optional<DemFlow> flow_;  // of flows that are periodic in x and y
-  double initial_energy_;
+  double initial_energy_ = 0;
   std::int64_t arrested_ = 0, arrest_check_ = 0;  // steps between checks; 0: none
   double arrest_from_ = 0;
   double grain_steps_ = 0;
@@ -117,11 +127,6 @@ class DemModel final : public Model {
 
 }  // namespace
 
-std::unique_ptr<Model> make_dem(config::Case& input) {
-  DemInput in = read_dem(input);
-  std::optional<DemFlow> flow;
-  if (in.scenario == "chute") flow.emplace(input.root().child("cg"), in);
-  return std::make_unique<DemModel>(std::move(in), std::move(flow));
-}
+std::unique_ptr<Model> make_dem(config::Case& input) { return std::make_unique<DemModel>(read_dem(input)); }
 
 }  // namespace bagnold::app

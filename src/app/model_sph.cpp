@@ -29,7 +29,9 @@ constexpr std::int64_t rest_every = 64;  // steps between looks
 
 class SphModel final : public Model {
  public:
-  explicit SphModel(SphInput input) : in_(std::move(input)) {
+  explicit SphModel(SphInput input) : in_(std::move(input)) {}
+
+  void build(const Building&) override {
     state_.particles = on_plane() ? make_particles(in_.plane, in_.model)
                                   : make_particles(in_.column, in_.geometry, in_.model, in_.seed);
     initialise(state_, work_, in_.model);
@@ -245,6 +247,20 @@ class SphModel final : public Model {
          "sqrt(g H)/c; 0.1 or less keeps compression small"},
         {"largest viscosity over density", fmt::format("{:.4g} m^2/s", state_.max_kinematic_viscosity), "at the start"},
         {"largest step", fmt::format("{:.3g} s", step_limit(state_, m)), "eq. 39; sound only when implicit"}};
+  }
+
+  // A step has about 1.4 kB of memory a particle; what is written, the arrays of particles and their grid.
+  Cost cost() override {
+    const auto count = static_cast<double>(state_.particles.size());
+    return {.elements = "particle",
+            .engine = in_.model.stepping == sph::Stepping::implicit ? "implicit" : "explicit",
+            .count = count,
+            .element_steps = count * std::ceil(in_.end / step_limit(state_, in_.model)),
+            .usual_speed = 1e6,
+            .memory_mb = count * 1800e-6,
+            .snapshot_mb = count * 80e-6,
+            .vtk_mb = count * 360e-6,
+            .checkpoint_mb = count * 150e-6};
   }
 
  private:

@@ -5,15 +5,17 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace bagnold::app {
 
-Progress::Progress(double begin, double end, bool quiet)
+Progress::Progress(double begin, double end, bool quiet, std::string task)
     : begin_(begin),
       end_(end),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
-      color_(terminal_ && std::getenv("NO_COLOR") == nullptr) {}
+      color_(terminal_ && std::getenv("NO_COLOR") == nullptr),
+      task_(std::move(task)) {}
 
 Progress::~Progress() {
   if (drawn_ && terminal_) fmt::print(stderr, "\n");
@@ -30,14 +32,16 @@ void Progress::show(double time, const std::string& physics) {
   drawn_ = true;
   const double elapsed = std::chrono::duration<double>(last_ - start_).count();
   const double done = end_ > begin_ ? std::clamp((time - begin_) / (end_ - begin_), 0.0, 1.0) : 1.0;
-  const std::string eta = done > 0 ? duration_text(elapsed * (1 - done) / done) : "?";
+  const std::string latest = task_.empty() ? "" : "at most ", before = task_.empty() ? "" : task_ + ": ";
+  const std::string eta = latest + (done > 0 ? duration_text(elapsed * (1 - done) / done) : "?");
   if (!terminal_) {
-    fmt::print(stderr, "t = {:.6g} of {:g} ({:.0f} %), {}, ETA {}\n", time, end_, 100 * done, physics, eta);
+    fmt::print(stderr, "{}t = {:.6g} of {}{:g} ({:.0f} %), {}, ETA {}\n", before, time, latest, end_, 100 * done,
+               physics, eta);
     return;
   }
   constexpr int width = 24;
   const int full = static_cast<int>(done * width);
-  fmt::print(stderr, "\r{}[{}{}]{} {:3.0f} %  t = {:.5g}  {}  ETA {}\033[K", color_ ? "\033[36m" : "",
+  fmt::print(stderr, "\r{}{}[{}{}]{} {:3.0f} %  t = {:.5g}  {}  ETA {}\033[K", before, color_ ? "\033[36m" : "",
              std::string(static_cast<std::size_t>(full), '='), std::string(static_cast<std::size_t>(width - full), ' '),
              color_ ? "\033[0m" : "", 100 * done, time, physics, eta);
   std::fflush(stderr);

@@ -7,7 +7,8 @@ namespace bagnold::app {
 
 class Progress {
  public:
-  Progress(double begin, double end, bool quiet);
+  // `task`: what it is that goes on, when that is not a run; then `end` is when it ends at the latest.
+  Progress(double begin, double end, bool quiet, std::string task = "");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -18,6 +19,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   double begin_, end_;
   bool quiet_, terminal_, color_;
+  std::string task_;
   Clock::time_point start_ = Clock::now(), last_ = Clock::now();
   bool drawn_ = false;
 };

@@ -1,8 +1,9 @@
-// bagnold check CASE.toml: build everything, print what follows from the input, take no step.
+// bagnold check CASE.toml: read every key, build the start, print what follows from the input; take no step.
 #include <fmt/format.h>
 
 #include <memory>
 
+#include "app/cost.hpp"
 #include "app/driver.hpp"
 #include "app/model.hpp"
 #include "app/use_threads.hpp"
@@ -17,15 +18,20 @@ int check(const std::string& path, const std::vector<std::string>& set, bool res
   use_threads(0);
   config::Case input = config::Case::from_file(path, set);
   const auto model = make_model(input);
-  (void)input.root().child("output").read<OutputSettings>();
-  (void)input.root().get<std::int64_t>("seed", 1);
+  const config::Section root = input.root();
+  const auto name = root.get<std::string>("model", std::nullopt);
+  const OutputSettings output = read_output(root.child("output"), model->end_time());
+  (void)root.get<std::int64_t>("seed", 1);
   input.reject_unread();
+  model->build({.estimate = true, .quiet = true});
   if (resolved) {
     fmt::print("{}", input.resolved());
     return 0;
   }
   fmt::print("{}: {}\n", path, model->scenario());
-  for (const Derived& d : model->derived()) fmt::print("  {:<34} {:<24} {}\n", d.name, d.value, d.meaning);
+  std::vector<Derived> lines = model->derived();
+  for (Derived& d : cost_lines(model->cost(), name, output, model->end_time())) lines.push_back(std::move(d));
+  for (const Derived& d : lines) fmt::print("  {:<34} {:<24} {}\n", d.name, d.value, d.meaning);
   return 0;
 }
 

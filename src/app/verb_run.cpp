@@ -1,9 +1,11 @@
 // bagnold run CASE.toml, bagnold resume DIR: from a case to a run directory.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 
+#include "app/cost.hpp"
 #include "app/driver.hpp"
 #include "app/signals.hpp"
 #include "app/use_threads.hpp"
@@ -26,25 +28,29 @@ struct RunOptions {
 };
 
 // A directory that holds a run is never silently replaced; one that holds anything else is never touched.
-void prepare_directory(const fs::path& directory, bool overwrite) {
+void refuse_directory(const fs::path& directory, bool overwrite) {
   std::error_code failed;
-  if (fs::exists(directory, failed) && !fs::is_empty(directory, failed)) {
-    const bool is_run = fs::exists(directory / "case.toml");
-    if (!is_run)
-      throw InputError(
-          fmt::format("{}: error: exists and is not a run directory, expected a new one", directory.string()));
-    if (!overwrite)
-      throw InputError(
-          fmt::format("{}: error: holds a run already, expected a new directory, --overwrite, or 'bagnold resume {}'",
-                      directory.string(), directory.string()));
-    for (const char* name : {"case.toml", "summary.json", "series.csv", "profile.csv", "run.h5", "checkpoint.h5",
-                             "checkpoint.prev.h5", "report.html", "vtk", "figures"})
-      fs::remove_all(directory / name, failed);
-  }
+  if (!fs::exists(directory, failed) || fs::is_empty(directory, failed)) return;
+  if (!fs::exists(directory / "case.toml"))
+    throw InputError(
+        fmt::format("{}: error: exists and is not a run directory, expected a new one", directory.string()));
+  if (!overwrite)
+    throw InputError(
+        fmt::format("{}: error: holds a run already, expected a new directory, --overwrite, or 'bagnold resume {}'",
+                    directory.string(), directory.string()));
+}
+
+void prepare_directory(const fs::path& directory, bool overwrite) {
+  refuse_directory(directory, overwrite);
+  std::error_code failed;
+  for (const char* name : {"case.toml", "summary.json", "series.csv", "profile.csv", "run.h5", "checkpoint.h5",
+                           "checkpoint.prev.h5", "report.html", "vtk", "figures"})
+    fs::remove_all(directory / name, failed);
   fs::create_directories(directory, failed);
   if (failed) throw IoError(fmt::format("{}: error: cannot be created: {}", directory.string(), failed.message()));
 }
 
+// The last keys of a case: after this every key has been read and what nobody asked for is refused.
 RunContext read_context(config::Case& input, Model& model, const fs::path& directory, bool quiet) {
   RunContext context;
   context.directory = directory;
@@ -52,18 +58,18 @@ RunContext read_context(config::Case& input, Model& model, const fs::path& direc
   const config::Section root = input.root();
   context.model_name = root.get<std::string>("model", std::nullopt);
   context.seed = root.get<std::int64_t>("seed", 1);
-  const config::Section output = root.child("output");
-  context.output = output.read<OutputSettings>();
-  const auto settle = [&](std::optional<double>& every, const char* key, double parts) {
-    if (!every) every = model.end_time() / parts;
-    output.resolve(key, *every);
-  };
-  settle(context.output.series_every, "series_every", 1000);
-  settle(context.output.snapshot_every, "snapshot_every", 10);
-  settle(context.output.vtk_every, "vtk_every", 20);
+  context.output = read_output(root.child("output"), model.end_time());
   input.reject_unread();
-  context.resolved_case = input.resolved();
   return context;
+}
+
+// And remembers how fast it went.
+int drive_and_time(Model& model, const RunContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  const int exit_code = drive(model, context);
+  remember_speed(model.cost(), context.model_name, model.element_steps(),
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return exit_code;
 }
 
 int run(const RunOptions& options) {
@@ -73,12 +79,20 @@ int run(const RunOptions& options) {
       options.directory.empty() ? fs::path("out") / fs::path(options.input).stem() : fs::path(options.directory);
   input.will_live_in(directory.string());
   const auto model = make_model(input);
-  const RunContext context = read_context(input, *model, directory, options.quiet);
+  RunContext context = read_context(input, *model, directory, options.quiet);
+  refuse_directory(directory, options.overwrite);
+  catch_signals();
+  model->build({.quiet = options.quiet});
+  context.resolved_case = input.resolved();
   prepare_directory(directory, options.overwrite);
   io::write_file(directory / "case.toml", context.resolved_case);
-  if (!options.quiet)
-    for (const Derived& d : model->derived()) fmt::print(stderr, "  {:<34} {:<24} {}\n", d.name, d.value, d.meaning);
-  return drive(*model, context);
+  if (!options.quiet) {
+    std::vector<Derived> lines = model->derived();
+    for (Derived& d : cost_lines(model->cost(), context.model_name, context.output, model->end_time()))
+      lines.push_back(std::move(d));
+    for (const Derived& d : lines) fmt::print(stderr, "  {:<34} {:<24} {}\n", d.name, d.value, d.meaning);
+  }
+  return drive_and_time(*model, context);
 }
 
 int resume(const RunOptions& options) {
@@ -90,8 +104,11 @@ int resume(const RunOptions& options) {
   config::Case input = config::Case::from_file((directory / "case.toml").string());
   const auto model = make_model(input);
   RunContext context = read_context(input, *model, directory, options.quiet);
+  catch_signals();
+  model->build({.quiet = options.quiet, .resuming = directory});
+  context.resolved_case = input.resolved();
   context.resume = true;
-  return drive(*model, context);
+  return drive_and_time(*model, context);
 }
 
 }  // namespace

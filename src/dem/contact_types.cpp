@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dem/contact_laws.hpp"
 #include "dem/contact_model.hpp"
@@ -86,14 +87,19 @@ std::vector<ContactType> contact_types(const DemState& state, const ContactModel
   return types;
 }
 
+std::vector<Finding> overlap_findings(const DemState& state) {
+  const double overlap = max_overlap_over_radius(state);
+  if (overlap <= 0.01) return {};
+  return {
+      {overlap > 0.1, "scenario",
+       fmt::format("grains overlap at the start by up to {:.2g} of a radius, expected at most 0.1: the springs would "
+                   "fling them apart",
+                   overlap)}};
+}
+
 std::vector<Finding> physical_findings(const DemState& state, const ContactModel& model) {
   std::vector<Finding> findings = step_findings(state, model);
-  const double overlap = max_overlap_over_radius(state);
-  if (overlap > 0.01)
-    findings.push_back({overlap > 0.1, "scenario",
-                        fmt::format("grains overlap at the start by up to {:.2g} of a radius, expected at most 0.1: "
-                                    "the springs would fling them apart",
-                                    overlap)});
+  for (Finding& finding : overlap_findings(state)) findings.push_back(std::move(finding));
   return findings;
 }
 

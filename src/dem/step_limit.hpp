@@ -23,5 +23,7 @@ std::string to_string(const StepLimit& limit);  // "grain-grain, d = 0.1 and 0.1
 // dt of the state against the limiting pair: beyond tc/10 or the largest stable step an error, beyond half of that a
 // warning. Also overdamped contact types (warning) and a state in which nothing moves (error).
 std::vector<Finding> step_findings(const DemState& state, const ContactModel& model);
+// Overlaps of a prepared state: more than 1 % of the smaller radius is a warning, more than 10 % an error.
+std::vector<Finding> overlap_findings(const DemState& state);
 
 }  // namespace bagnold::dem

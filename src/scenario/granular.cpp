@@ -27,14 +27,6 @@ void add_grain(dem::Grains& grains, const Vec3& x, double diameter, double densi
   if (species == grain_species) ++grains.flowing;  // flowing grains are added first
 }
 
-std::vector<double> draw_diameters(std::int64_t count, const GrainMaterial& material, std::uint64_t seed) {
-  std::vector<double> diameters(static_cast<std::size_t>(count), material.diameter);
-  if (material.size_spread > 0)
-    for (std::size_t i = 0; i < diameters.size(); ++i)
-      diameters[i] *= 1 + material.size_spread * (2 * random::uniform(seed, random::Stream::sizes, i) - 1);
-  return diameters;
-}
-
 // The base below z = 0: copies of a periodic patch of base grains side by side, or a plane.
 void add_base(dem::DemState& state, const std::vector<Vec3>& patch, double diameter, double density, int nx, int ny,
               const Vec3& patch_size) {
@@ -83,6 +75,14 @@ dem::DemState make_plane(double length, double base_diameter, double density, co
 
 }  // namespace
 
+std::vector<double> draw_diameters(std::int64_t count, const GrainMaterial& material, std::uint64_t seed) {
+  std::vector<double> diameters(static_cast<std::size_t>(count), material.diameter);
+  if (material.size_spread > 0)
+    for (std::size_t i = 0; i < diameters.size(); ++i)
+      diameters[i] *= 1 + material.size_spread * (2 * random::uniform(seed, random::Stream::sizes, i) - 1);
+  return diameters;
+}
+
 BedRecipe base_recipe(double length, double width, double base_diameter, std::uint64_t seed) {
   BedRecipe recipe;
   recipe.length = length / base_diameter;
@@ -112,13 +112,11 @@ BedRecipe avalanche_recipe(const Avalanche& avalanche, const GrainMaterial& mate
   return recipe;
 }
 
-namespace {
-double grain_count(const Chute& chute, double d) {
-  return std::nearbyint((chute.length / d) * (chute.width / d) * (chute.fill_height / d));
+std::int64_t grain_count(const Chute& chute, double d) {
+  return std::llrint((chute.length / d) * (chute.width / d) * (chute.fill_height / d));
 }
-}  // namespace
 
-void check_chute(const Chute& chute, const GrainMaterial& material) {
+void check(const Chute& chute, const GrainMaterial& material) {
   const double d = material.diameter, largest = d * std::max(1 + material.size_spread, chute.base_size_ratio);
   for (const auto& [key, value] :
        {std::pair{"scenario.length", chute.length}, std::pair{"scenario.width", chute.width}})
@@ -132,7 +130,7 @@ void check_chute(const Chute& chute, const GrainMaterial& material) {
 
 dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, const std::vector<Vec3>& base,
                          std::uint64_t seed) {
-  check_chute(chute, material);
+  check(chute, material);
   const double d = material.diameter;
   dem::DemState state;
   const double theta = chute.angle_deg * std::numbers::pi / 180;
@@ -140,8 +138,7 @@ dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, cons
   state.box = {{0, 0, 0}, {chute.length, chute.width, chute.fill_height}, {true, true, false}};
   add_base(state, base, chute.base_size_ratio * d, material.density, 1, 1, {});
 
-  const std::vector<double> diameters =
-      draw_diameters(static_cast<std::int64_t>(grain_count(chute, d)), material, seed);
+  const std::vector<double> diameters = draw_diameters(grain_count(chute, d), material, seed);
   FillRegion region{.box = state.box,
                     .solid_floor = chute.base_size_ratio == 0,
                     .height = chute.fill_height,
@@ -150,12 +147,18 @@ dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, cons
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 
-dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch,
-                          const Bed& bed) {
-  const double d = material.diameter;
+void check(const Column& column, const GrainMaterial& material) {
   if (column.length < 2.5 * column.radius)
     throw UnphysicalError("scenario.length",
                           "the plane must be wider than the column by some run-out, expected at least 2.5 radius");
+  if (2 * column.radius < material.diameter)
+    throw UnphysicalError("scenario.radius", "no grains: the column is narrower than a grain");
+}
+
+dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                          const Bed& bed) {
+  check(column, material);
+  const double d = material.diameter;
   dem::DemState state = make_plane(column.length, column.base_size_ratio * d, material.density, patch);
   state.gravity = {0, 0, -column.gravity};
 
@@ -174,7 +177,7 @@ dem::DemState make_column(const Column& column, const GrainMaterial& material, c
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 
-void check_avalanche(const Avalanche& avalanche, const GrainMaterial& material) {
+void check(const Avalanche& avalanche, const GrainMaterial& material) {
   const double largest = material.diameter * std::max(1 + material.size_spread, avalanche.base_size_ratio);
   if (avalanche.width < 2 * largest)
     throw UnphysicalError(
@@ -187,7 +190,7 @@ void check_avalanche(const Avalanche& avalanche, const GrainMaterial& material) 
 
 dem::DemState make_avalanche(const Avalanche& avalanche, const GrainMaterial& material, const std::vector<Vec3>& patch,
                              const Bed& bed) {
-  check_avalanche(avalanche, material);
+  check(avalanche, material);
   const double d = material.diameter, base = avalanche.base_size_ratio * d;
   const double theta = avalanche.angle_deg * std::numbers::pi / 180;
   dem::DemState state;
@@ -212,11 +215,17 @@ dem::DemState make_avalanche(const Avalanche& avalanche, const GrainMaterial& ma
   return with_flowing(std::move(state), x, diameters, material.density);
 }
 
-dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch,
-                        std::uint64_t seed) {
-  const double d = material.diameter;
+void check(const Heap& heap, const GrainMaterial& material) {
   if (heap.length < 2.5 * heap.radius)
     throw UnphysicalError("scenario.length", "the plane must be wider than the heap, expected at least 2.5 radius");
+  if (2 * heap.radius < material.diameter * (1 + material.size_spread))
+    throw UnphysicalError("scenario.radius", "the cylinder is narrower than a grain");
+}
+
+dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch,
+                        std::uint64_t seed) {
+  check(heap, material);
+  const double d = material.diameter;
   dem::DemState state = make_plane(heap.length, heap.base_size_ratio * d, material.density, patch);
   state.gravity = {0, 0, -heap.gravity};
   const std::vector<double> diameters = draw_diameters(heap.grains, material, seed);

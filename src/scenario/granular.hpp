@@ -154,14 +154,21 @@ BedRecipe avalanche_recipe(const Avalanche& avalanche, const GrainMaterial& mate
 // Side of the patch that tiles the plane of a column or heap, length of that of an avalanche, in base diameters.
 inline constexpr double base_patch = 10, avalanche_patch = 20;
 
+std::int64_t grain_count(const Chute& chute, double d);
+std::vector<double> draw_diameters(std::int64_t count, const GrainMaterial& material, std::uint64_t seed);
+
+// What can be said before a bed is settled. Throw UnphysicalError for an empty fill or a box too small for its grains.
+void check(const Chute& chute, const GrainMaterial& material);
+void check(const Avalanche& avalanche, const GrainMaterial& material);
+void check(const Column& column, const GrainMaterial& material);
+void check(const Heap& heap, const GrainMaterial& material);
+
 // Builders. `base`: centres of base grains in their own diameters (cut_base), ignored for base_size_ratio = 0.
-// Throw UnphysicalError for an empty fill or a box too small for its grains.
-void check_chute(const Chute& chute, const GrainMaterial& material);
+// Throw UnphysicalError like check(), which they call.
 dem::DemState make_chute(const Chute& chute, const GrainMaterial& material, const std::vector<Vec3>& base,
                          std::uint64_t seed);
 dem::DemState make_column(const Column& column, const GrainMaterial& material, const std::vector<Vec3>& patch,
                           const Bed& bed);
-void check_avalanche(const Avalanche& avalanche, const GrainMaterial& material);
 dem::DemState make_avalanche(const Avalanche& avalanche, const GrainMaterial& material, const std::vector<Vec3>& patch,
                              const Bed& bed);
 dem::DemState make_heap(const Heap& heap, const GrainMaterial& material, const std::vector<Vec3>& patch,
