@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when settle_bed gives other beds for the same recipe, so that old ones are not used.
-constexpr int bed_version = 1;
+constexpr int bed_version = 2;
 
 fs::path cache_folder() {
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != 0) return fs::path(xdg) / "bagnold";

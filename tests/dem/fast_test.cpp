@@ -155,11 +155,9 @@ TEST(Fast, PlainEngineGoesOnFromItsState) {
 TEST(Fast, LeavesToThePlainEngineWhatItCannotDo) {
   DemState s = dense_flow(mixtures()[0]);
   EXPECT_TRUE(fast::supports(s));
-  s.keep_ledger = true;
-  EXPECT_FALSE(fast::supports(s));
-  s.keep_ledger = false;
   s.box.length.x = 2;
   EXPECT_FALSE(fast::supports(s));
+  EXPECT_FALSE(fast::supports(random_packing(3, 1, 1)));
 }
 
 }  // namespace
