@@ -75,7 +75,7 @@ void selection(benchmark::State& bench, bool inner) {
   const double horizon = (inner ? fast::inner_steps : fast::mid_steps) * engine.dt;
   for (auto _ : bench)
     for (const fast::Section& section : engine.sections) {
-      fast::select(engine.rows, engine.images, from(section), horizon,
+      fast::select(engine.rows, engine.images, from(section), horizon, 0,
                    (inner ? section.inner_valid : section.mid_valid).margin, out);
       benchmark::DoNotOptimize(out.count);
     }

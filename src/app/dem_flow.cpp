@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/profile_files.hpp"
-#include "dem/energy.hpp"
+#include "dem/observe.hpp"
 
 namespace bagnold::app {
 
@@ -55,13 +55,13 @@ DemFlow::DemFlow(const config::Section& section, const DemInput& in)
 
 std::int64_t DemFlow::next_step(std::int64_t step) const { return (step / energy_every_ + 1) * energy_every_; }
 
-void DemFlow::observe(const DemInput& in) {
+void DemFlow::observe(DemInput& in) {
   if (in.state.step % energy_every_ != 0 || in.state.step == last_energy_step_) return;
-  const dem::Energies e = dem::energies(in.state, in.laws);
+  const dem::Observation seen = dem::observe(in.state, in.laws);
   t_.push_back(in.state.time());
-  kinetic_.push_back(e.kinetic());
-  elastic_.push_back(e.elastic());
-  max_overlap_ = std::max(max_overlap_, dem::max_overlap_over_radius(in.state));
+  kinetic_.push_back(seen.energies.kinetic());
+  elastic_.push_back(seen.energies.elastic());
+  max_overlap_ = std::max(max_overlap_, seen.overlap_ratio);
   last_energy_step_ = in.state.step;
 }
 

@@ -39,7 +39,7 @@ class DemFlow {
 
   dem::Watch watch(const DemInput& in) { return observer_.watch(in.laws); }  // for every step
   std::int64_t next_step(std::int64_t step) const;  // the next one at which observe() has to be called
-  void observe(const DemInput& in);
+  void observe(DemInput& in);
   std::vector<NamedArray> state();
 
   // profile.csv, widths.csv (solid fraction for several kernel widths), steadiness.csv. A run that ended before the average began

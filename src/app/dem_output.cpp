@@ -18,26 +18,6 @@ namespace bagnold::app {
 
 namespace {
 
-Vec3 mean_velocity(const dem::DemState& state) {
-  Vec3 momentum;
-  double mass = 0;
-  for (std::int64_t i = 0; i < state.grains.flowing; ++i) {
-    const double m = state.grains.mass[static_cast<std::size_t>(i)];
-    momentum += m * dem::full_step_velocity(state, i);
-    mass += m;
-  }
-  return momentum / mass;
-}
-
-double centre_height(const dem::DemState& state) {
-  double moment = 0, mass = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(state.grains.flowing); ++i) {
-    moment += state.grains.mass[i] * state.grains.x[i].z;
-    mass += state.grains.mass[i];
-  }
-  return moment / mass;
-}
-
 struct FullStep {  // velocities at the time of the positions
   std::vector<Vec3> v, omega;
   explicit FullStep(const dem::DemState& state) {
@@ -71,10 +51,9 @@ std::vector<io::Column> dem_series_columns() {
           {"max_overlap_over_radius", "-", "largest overlap over the smaller radius"}};
 }
 
-std::vector<double> dem_series_row(const DemInput& in, double initial_energy, std::vector<dem::Contact>& contacts) {
-  const dem::Energies e = dem::energies(in.state, in.laws);
+std::vector<double> dem_series_row(const DemInput& in, const dem::Observation& seen, double initial_energy) {
+  const dem::Energies& e = seen.energies;
   const dem::Ledger& ledger = in.state.ledger;
-  dem::list_contacts(in.state, in.laws, contacts);
   const auto kept = [&](double v) { return in.state.keep_ledger ? v : NAN; };
   return {in.state.time(),
           e.translational,
@@ -90,10 +69,10 @@ std::vector<double> dem_series_row(const DemInput& in, double initial_energy, st
           kept(ledger.opened),
           kept(e.total() + dem::lost(ledger) - initial_energy),
           e.elastic() > 0 ? e.kinetic() / e.elastic() : NAN,
-          mean_velocity(in.state).x,
-          centre_height(in.state),
-          static_cast<double>(contacts.size()) / static_cast<double>(in.state.grains.flowing),
-          dem::max_overlap_over_radius(in.state)};
+          seen.velocity.x,
+          seen.centre_height,
+          static_cast<double>(seen.contacts) / static_cast<double>(in.state.grains.flowing),
+          seen.overlap_ratio};
 }
 
 void write_dem_snapshot(io::H5File& file, const std::string& group, const dem::DemState& state,
@@ -213,8 +192,9 @@ void add_avalanche(nlohmann::ordered_json& summary, const DemInput& in) {
 
 }  // namespace
 
-void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double initial_energy) {
-  const dem::Energies e = dem::energies(in.state, in.laws);
+void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, const dem::Observation& seen,
+                     double initial_energy) {
+  const dem::Energies& e = seen.energies;
   nlohmann::ordered_json energy;
   energy["kinetic"] = e.kinetic();
   energy["elastic"] = e.elastic();
@@ -222,7 +202,7 @@ void add_dem_summary(nlohmann::ordered_json& summary, const DemInput& in, double
   energy["ratio"] = e.elastic() > 0 ? e.kinetic() / e.elastic() : NAN;
   energy["ledger_residual"] = in.state.keep_ledger ? e.total() + dem::lost(in.state.ledger) - initial_energy : NAN;
   summary["energy"] = energy;
-  summary["max_overlap_over_radius"] = dem::max_overlap_over_radius(in.state);
+  summary["max_overlap_over_radius"] = seen.overlap_ratio;
   if (in.scenario == "column" || in.scenario == "heap") add_column(summary, in);
   if (in.scenario == "avalanche") add_avalanche(summary, in);
 }

@@ -166,15 +166,17 @@ class Run {
 };
 
 // Advances to `until` in pieces short enough to show progress and write checkpoints in wall time.
-void advance(Model& model, Run& run, Progress& progress, const RunContext& context, double until) {
+// `piece`: how long they are, in time of the model; the next call goes on with that.
+void advance(Model& model, Run& run, Progress& progress, const RunContext& context, double until, double& piece) {
   static constexpr double piece_s = 0.2;
-  double piece = (until - model.time()) / 64;
   while (model.time() < until * (1 - 1e-12) && !model.ended() && !stop_requested()) {
     const auto begin = Clock::now();
     const double from = model.time();
     model.advance(std::min(until, from + piece));
     const double took = std::max(1e-9, seconds_since(begin));
-    piece = std::max(model.time() - from, 1e-300) * std::clamp(piece_s / took, 0.5, 2.0);
+    const double longer = std::max(model.time() - from, 1e-300) * std::clamp(piece_s / took, 0.5, 2.0);
+    // One that had to end early says nothing of longer ones, unless it took too long.
+    piece = model.time() < until * (1 - 1e-12) ? longer : std::max(longer, took < piece_s ? piece : 0.0);
     if (progress.due()) progress.show(model.time(), model.progress());
     // Not at `until` itself: what is due there has not been written yet.
     const bool between = model.time() < until * (1 - 1e-12);
@@ -200,9 +202,10 @@ int drive(Model& model, const RunContext& context) {
   catch_signals();
   Run run(model, context);
   Progress progress(model.time(), model.end_time(), context.quiet);
+  double piece = (run.next_event() - model.time()) / 64;
   try {
     while (model.time() < model.end_time() * (1 - 1e-12) && !model.ended()) {
-      advance(model, run, progress, context, run.next_event());
+      advance(model, run, progress, context, run.next_event(), piece);
       if (stop_requested()) {
         run.checkpoint();
         run.finish("interrupted");

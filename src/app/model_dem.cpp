@@ -11,7 +11,7 @@
 #include "app/model.hpp"
 #include "app/signals.hpp"
 #include "dem/contacts.hpp"
-#include "dem/energy.hpp"
+#include "dem/observe.hpp"
 
 namespace bagnold::app {
 
@@ -43,14 +43,14 @@ class DemModel final : public Model {
     const double goal =
         until * (1 - 1e-12);  // what the driver takes for `until`: it would wait forever for anything less
     const auto last = static_cast<std::int64_t>(std::ceil(goal / in_.state.dt));
-    // Signals are heeded every few tenths of a second; entering and leaving the engine costs a few steps.
+    // Signals are heeded every few tenths of a second.
     const std::int64_t chunk =
         std::max<std::int64_t>(1, 20'000'000 / std::max<std::int64_t>(1, in_.state.grains.flowing));
     while (time() < goal && !ended() && !stop_requested()) {
       std::int64_t steps = std::clamp<std::int64_t>(last - in_.state.step, 1, chunk);
       if (arrest_check_ > 0) steps = std::min(steps, arrest_check_ - in_.state.step % arrest_check_);
       if (flow_) steps = std::min(steps, flow_->next_step(in_.state.step) - in_.state.step);
-      dem::advance(in_.state, in_.laws, steps, flow_ ? flow_->watch(in_) : dem::Watch{});
+      dem::advance_inside(in_.state, in_.laws, steps, flow_ ? flow_->watch(in_) : dem::Watch{});
       if (flow_) flow_->observe(in_);
       grain_steps_ += static_cast<double>(steps * in_.state.grains.flowing);
       if (arrest_check_ > 0 && in_.state.step % arrest_check_ == 0 && time() > arrest_from_) check_arrest();
@@ -61,7 +61,7 @@ class DemModel final : public Model {
   std::string status() const override { return arrested_ != 0 ? "arrested" : "completed"; }
 
   std::vector<NamedArray> state() override {
-    auto arrays = dem::named_arrays(in_.state);
+    auto arrays = dem::named_arrays(complete().state);
     for (NamedArray& a : arrays) a.name = "dem/" + a.name;
     arrays.push_back({"arrested", &arrested_});
     arrays.push_back({"initial_energy", &initial_energy_});
@@ -72,10 +72,10 @@ class DemModel final : public Model {
   void restored() override {}
 
   std::vector<io::Column> series_columns() const override { return dem_series_columns(); }
-  std::vector<double> series_row() override { return dem_series_row(in_, initial_energy_, contacts_); }
+  std::vector<double> series_row() override { return dem_series_row(in_, seen(), initial_energy_); }
 
   std::string progress() override {
-    const dem::Energies e = dem::energies(in_.state, in_.laws);
+    const dem::Energies e = seen().energies;
     if (in_.gravity == 0 || e.elastic() == 0) return fmt::format("E_kin {:.4g}", e.kinetic());
     return fmt::format("E_kin/E_ela {:.3g}", e.kinetic() / e.elastic());
   }
@@ -84,16 +84,16 @@ class DemModel final : public Model {
     for (const auto& [name, bed] : in_.beds) write_bed(file, name, bed);
   }
   void write_snapshot(io::H5File& file, const std::string& group) override {
-    dem::list_contacts(in_.state, in_.laws, contacts_);
+    dem::list_contacts(complete().state, in_.laws, contacts_);
     write_dem_snapshot(file, group, in_.state, contacts_);
   }
   std::vector<std::pair<std::string, std::string>> write_vtk(const std::filesystem::path& directory,
                                                              int number) override {
-    dem::list_contacts(in_.state, in_.laws, contacts_);
+    dem::list_contacts(complete().state, in_.laws, contacts_);
     return write_dem_vtk(directory, number, in_.state, contacts_);
   }
   void write_results(const std::filesystem::path& directory) override {
-    if (flow_) flow_->write(directory, in_);
+    if (flow_) flow_->write(directory, complete());
   }
 
   void add_summary(nlohmann::ordered_json& summary, double wall_s) override {
@@ -102,7 +102,8 @@ class DemModel final : public Model {
     summary["particle_steps_per_s"] = wall_s > 0 ? grain_steps_ / wall_s : NAN;
     summary["list_rebuilds"] = in_.state.rebuilds;
     if (!in_.beds.empty()) summary["bed_hash"] = in_.bed_hash;
-    add_dem_summary(summary, in_, initial_energy_);
+    const dem::Observation last = seen();
+    add_dem_summary(summary, complete(), last, initial_energy_);
     if (flow_) flow_->add_summary(summary, in_);
   }
 
@@ -110,8 +111,15 @@ class DemModel final : public Model {
   Cost cost() override { return dem_cost(in_); }
 
  private:
+  // The engine keeps the grains from step to step and is only asked; whoever needs them all completes the state.
+  dem::Observation seen() { return dem::observe(in_.state, in_.laws); }
+  DemInput& complete() {
+    dem::hand_back(in_.state);
+    return in_;
+  }
+
   void check_arrest() {
-    const dem::Energies e = dem::energies(in_.state, in_.laws);
+    const dem::Energies e = seen().energies;
     arrested_ = e.kinetic() < 1e-5 * e.elastic() ? 1 : 0;  // Weinhart et al. 2012, section 6
   }
 

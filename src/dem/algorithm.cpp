@@ -77,6 +77,13 @@ void prepare(DemState& state, const ContactLaws& laws) {
 }
 
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
+  advance_inside(state, laws, steps, watch);
+  hand_back(state);
+}
+
+void hand_back(DemState& state) { fast::hand_back(state); }
+
+void advance_inside(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
   if (fast::supports(state)) return fast::advance(state, laws, steps, watch);
   for (const std::int64_t end = state.step + steps; state.step < end;) {
     advance_plain(state, laws, watch.next_stop(state.step, end) - state.step);
@@ -85,6 +92,7 @@ void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const
 }
 
 void advance_plain(DemState& state, const ContactLaws& laws, std::int64_t steps) {
+  hand_back(state);
   for (const std::int64_t end = state.step + steps; state.step < end;) {
     kick(state);   // v, omega at t + dt/2
     drift(state);  // x at t + dt

@@ -38,9 +38,14 @@ struct Watch {
 // Throws UnphysicalError for a state that cannot be stepped (dt, masses, species, walls).
 void prepare(DemState& state, const ContactLaws& laws);
 
-// Takes `steps` steps. Allocates only when the neighbour list is rebuilt. Throws NumericalError. By the fast engine
+// Takes `steps` steps. Throws NumericalError, the state being complete. By the fast engine
 // (dem/fast/engine.hpp) where it can, otherwise plainly; their trajectories differ by round-off only.
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
+
+// The same for who goes on or only looks (dem/observe.hpp): the fast engine may keep the grains, and but for its step the
+// state has none until hand_back() completes it. Nothing to complete: nothing happens.
+void advance_inside(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
+void hand_back(DemState& state);
 
 // Algorithm 1 step by step: the reference.
 void advance_plain(DemState& state, const ContactLaws& laws, std::int64_t steps);

@@ -46,12 +46,13 @@ void balance_ledger(DemState& state, const ContactLaws& laws) {
       power.rolling -= dot(c.force.roll_damping, now.spin);
     });
   });
-  Ledger& l = state.ledger;
-  if (state.step > 0) {
-    l.damped.normal += 0.5 * state.dt * (l.power.normal + power.normal);
-    l.damped.tangential += 0.5 * state.dt * (l.power.tangential + power.tangential);
-    l.damped.rolling += 0.5 * state.dt * (l.power.rolling + power.rolling);
-  }
+  integrate(state.ledger, power, state.step > 0 ? state.dt : 0);
+}
+
+void integrate(Ledger& l, const Dissipation& power, double dt) {
+  l.damped.normal += 0.5 * dt * (l.power.normal + power.normal);
+  l.damped.tangential += 0.5 * dt * (l.power.tangential + power.tangential);
+  l.damped.rolling += 0.5 * dt * (l.power.rolling + power.rolling);
   l.power = power;
 }
 

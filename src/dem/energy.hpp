@@ -23,6 +23,9 @@ double lost(const Ledger& ledger);
 // Called once a step after the forces: integrates the power of the dashpots at the full-step velocities.
 void balance_ledger(DemState& state, const ContactLaws& laws);
 
+// Enters the power of the dashpots at a step that comes `dt` after the last: trapezoidal rule.
+void integrate(Ledger& ledger, const Dissipation& power, double dt);
+
 // Largest overlap over the smaller radius of the pair; 0 without contacts.
 double max_overlap_over_radius(const DemState& state);
 

@@ -22,19 +22,6 @@ struct Tally {
 };
 using Tallies = std::array<Tally, max_parts>;
 
-// Energy lost with the springs of a contact that opens: a last stretch, then all of it is cut.
-template <class Law>
-double energy_left(const Law& law, const Geometry& g, const Size& size, const History& history, double dt) {
-  const auto normal = law.normal.respond(max(0.0, g.overlap + dt * g.vn), size);
-  const auto lost_with = [&](double stiffness, const auto& spring, const auto& rate) {
-    return laws::slip_loss(stiffness, spring, laws::stretched(spring, rate, g, dt), {0, 0, 0});
-  };
-  double energy = lost_with(law.tangential.stiffness(normal), history.spring, g.slip);
-  if constexpr (decltype(law.rolling)::active)
-    energy += lost_with(law.rolling.stiffness(normal, size), history.roll, g.spin);
-  return energy;
-}
-
 // The contact in slot k of `touching`, `spring`, `roll` advances by dt and acts; returns what it does.
 template <bool KeepLedger, class Law, class Contacts>
 Force act(Contacts& contacts, std::size_t k, const Law& law, const Motion& motion, const Size& size, double permitted,
@@ -59,7 +46,7 @@ template <class Law, class Contacts>
 void open(Contacts& contacts, std::size_t k, const Law& law, const Motion& motion, const Size& size, double dt,
           Tally& tally) {
   const History history{numbers(contacts.spring[k]), numbers(contacts.roll[k])};
-  tally.opened += energy_left(law, laws::pair_geometry(motion), size, history, dt);
+  tally.opened += laws::energy_left(law, laws::pair_geometry(motion), size, history, dt);
   contacts.touching[k] = 0;
   contacts.spring[k] = contacts.roll[k] = Vec3{};
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/variant.hpp"
 #include "core/random.hpp"
 #include "dem/algorithm.hpp"
 #include "dem/energy.hpp"
@@ -36,6 +37,9 @@ dem::ContactModel contacts_of(const BedRecipe& recipe) {
                              laws::LinearHistory{.friction = recipe.friction}, laws::NoRollingResistance{}});
 }
 
+// Baseline has the same bits on every processor; a build without it makes other beds.
+Variant bed_variant() { return executable(Variant::baseline) ? Variant::baseline : variant(); }
+
 // The only place where a bed takes steps: what is called here decides its bits (bed_path).
 void step_bed(dem::DemState& state, const dem::ContactLaws& laws, std::int64_t steps) {
   dem::advance(state, laws, steps);
@@ -57,11 +61,11 @@ bool advance(dem::DemState& state, const dem::ContactLaws& laws, std::int64_t st
 }  // namespace
 
 std::string_view bed_path() {
-#ifdef __FMA__
-  return "settle_bed 2, fused";  // compiled for one kind of processor
-#else
-  return "settle_bed 2";
-#endif
+  switch (bed_variant()) {
+    case Variant::avx2: return "settle_bed 3, avx2";
+    case Variant::avx512: return "settle_bed 3, avx512";
+    default: return "settle_bed 3";
+  }
 }
 
 std::int64_t bed_grains(const BedRecipe& recipe) { return grain_count(box_of(recipe), 1); }
@@ -72,6 +76,7 @@ double bed_steps(const BedRecipe& recipe) {
 }
 
 std::optional<Bed> settle_bed(const BedRecipe& recipe, const SettlingWatch& watch) {
+  const WithVariant portable(bed_variant());
   dem::DemState state = make_chute(box_of(recipe), {.size_spread = recipe.size_spread}, {}, seed_of(recipe));
   const dem::ContactModel model = contacts_of(recipe);
   const dem::ContactLaws laws = dem::compile(model, dem::mean_pair_mass(state.grains));

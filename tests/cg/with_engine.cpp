@@ -98,16 +98,19 @@ TEST(ProfileOfARunningEngine, IsThatOfItsSnapshotsSampleAfterSample) {
   expect_same(direct, plain, 1e-13);
 }
 
-// Grains of several sizes and grains that are alike, contacts with the base, level contacts, more than one slab and an odd
-// number of them.
+// Grains of several sizes and grains that are alike, contacts with the base and with a plane, level contacts, more than one
+// slab and an odd number of them.
 TEST(ProfileFromInsideTheFastEngine, IsThatOfItsSnapshotsWhateverTheThreads) {
   const auto laws = soft_laws();
   const int threads_before = threads();
-  for (const auto& [copies, alike] : {std::pair{1, false}, {9, false}, {1, true}, {9, true}}) {
+  for (const auto& [copies, alike, plane] :
+       {std::tuple{1, false, false}, {9, false, true}, {1, true, true}, {9, true, false}}) {
     std::vector<double> bits;
     for (const int count : {1, 2, 3}) {
       force_threads(count);
-      dem::DemState s = small_chute(2e-3, copies, alike), twin = s;
+      dem::DemState s = small_chute(2e-3, copies, alike);
+      if (plane) s.walls = {{{0, 0, -0.03}, {0, 0, 1}, 0}};
+      dem::DemState twin = s;
       dem::prepare(s, laws);
       dem::prepare(twin, laws);
       const laws::CgKernels::Any kernel = laws::CgGaussian{0.4};
@@ -123,12 +126,15 @@ TEST(ProfileFromInsideTheFastEngine, IsThatOfItsSnapshotsWhateverTheThreads) {
         cg::add_rows(inside, engine, scratch);
       };
       dem::advance(s, laws, 230, watch);
+      int at_walls = 0;
       for (int sample = 0; sample < 4; ++sample) {
         dem::advance(twin, laws, 50);
         cg::DemScratch memory;
         cg::add_snapshot(outside, cg::snapshot_of(twin, laws, memory), other);
+        for (const dem::Contact& c : memory.contacts) at_walls += c.j < 0 ? 1 : 0;
       }
       EXPECT_GT(inside.contacts, 100 * copies);
+      EXPECT_EQ(plane, at_walls > 0);
       expect_same(inside, outside, 1e-12);
       if (count == 1) bits = inside.flow.data;
       EXPECT_TRUE(inside.flow.data == bits) << count << " threads";

@@ -78,7 +78,7 @@ TEST(Fast, SameBitsWhateverTheThreadsTheOutputOrTheInterruptions) {
   const int before = threads();
   for (const Mixture& mixture : {mixtures()[0], mixtures()[4]}) {
     const DemState start = dense_flow(mixture, 17);  // four thousand grains: several blocks of slabs
-    set_threads(1);
+    force_threads(1);
     DemState once = start;
     advance(once, mixture.laws, 403);
     const std::string expected = bits(once);
@@ -153,11 +153,9 @@ TEST(Fast, PlainEngineGoesOnFromItsState) {
 TEST(Fast, LeavesToThePlainEngineWhatItCannotDo) {
   DemState s = dense_flow(mixtures()[0]);
   EXPECT_TRUE(fast::supports(s));
-  s.keep_ledger = true;
-  EXPECT_FALSE(fast::supports(s));
-  s.keep_ledger = false;
   s.box.length.x = 2;
   EXPECT_FALSE(fast::supports(s));
+  EXPECT_FALSE(fast::supports(random_packing(3, 1, 1)));
 }
 
 }  // namespace

@@ -121,13 +121,13 @@ TEST(Walls, SameBitsWhateverTheThreadsOrTheInterruptions) {
   for (const Mixture& mixture : {mixtures()[0], mixtures()[4], mixtures()[7]})
     for (const bool chute : {true, false}) {
       const DemState start = between_walls(mixture, chute, 13);
-      set_threads(1);
+      force_threads(1);
       DemState once = start;
       advance(once, mixture.laws, 303);
       const std::string expected = bits(once);
       ASSERT_GT(once.rebuilds, 1);
       for (const int count : {2, 3}) {
-        set_threads(count);
+        force_threads(count);
         DemState threaded = start;
         advance(threaded, mixture.laws, 303);
         EXPECT_TRUE(bits(threaded) == expected) << mixture.name << ", threads " << count;

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "dem/fast/pass.hpp"
 #include "dem/forces.hpp"
 #include "dem/neighbours.hpp"
 
@@ -16,10 +17,7 @@
 
 namespace bagnold::dem::fast {
 
-namespace {
-
-// Kick and drift of the grains in rows [begin, end): v += kick (F/m + g), x += dt v. Forces start again at 0.
-// Returns a bound on their acceleration. Nothing overlaps: otherwise every grain would wait for the stores of the last.
+// Nothing overlaps: otherwise every grain would wait for the stores of the last.
 double move_rows(double* __restrict position, double* __restrict velocity, double* __restrict force, std::size_t begin,
                  std::size_t end, const Vec3& gravity, double kick, double dt) {
   using simd::Four, simd::load_four, simd::store, simd::three_and_one;
@@ -41,6 +39,8 @@ double move_rows(double* __restrict position, double* __restrict velocity, doubl
   const double x = simd::lane(largest, 0), y = simd::lane(largest, 1), z = simd::lane(largest, 2);
   return std::sqrt(x * x + y * y + z * z);
 }
+
+namespace {
 
 // Copies the histories of `count` pairs, `numbers` each in groups of eight pairs: pair k from where place[key[k]] says, or
 // from the zeros.
@@ -89,17 +89,18 @@ double margin_for(const Engine& engine, std::size_t a, int steps) {
 
 void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
   Section& section = engine.sections[a];
+  const double before = engine.keep_ledger ? engine.dt : 0;
   const auto pads = engine.slabs[a].end;
   const Offset pad_i = offset_of(pads), pad_j = offset_of(pads + 1);
   if (!section.mid_valid.holds()) {
     const double margin = margin_for(engine, a, mid_steps);
     const PairSpan outer{section.outer_i.data(), section.outer_j.data(), nullptr, section.outer_count};
-    select(engine.rows, engine.images, outer, mid_steps * engine.dt, margin, section.mid);
+    select(engine.rows, engine.images, outer, mid_steps * engine.dt, before, margin, section.mid);
     section.mid.pad(8, pad_i, pad_j, 0);
     section.mid_valid.renew(mid_steps, margin);
   }
   const double margin = margin_for(engine, a, inner_steps);
-  select(engine.rows, engine.images, section.mid.span(), inner_steps * engine.dt, margin, scratch.inner);
+  select(engine.rows, engine.images, section.mid.span(), inner_steps * engine.dt, before, margin, scratch.inner);
   scratch.inner.pad(batch, pad_i, pad_j, static_cast<std::uint32_t>(section.outer_count));
   section.inner_valid.renew(inner_steps, margin);
   carry_history(engine, section, scratch);
@@ -111,68 +112,15 @@ void refresh(Engine& engine, std::size_t a, Scratch& scratch) {
     section.kind[k] = kind_of(engine, row_of(section.inner.i[k]), row_of(section.inner.j[k]));
 }
 
+void forces_without_ledger(Engine& engine) {
+  with_kernel(engine, [&]<class K>(const auto& tables) { all_forces<K, false>(engine, tables); });
+}
+
+void pass_without_ledger(Engine& engine, int from, int to, const Watch* watch) {
+  with_kernel(engine, [&]<class K>(const auto& tables) { pass<K, false>(engine, tables, from, to, watch); });
+}
+
 namespace {
-
-// f.operator()<K>(tables) with the kernel K for the laws and sizes at hand.
-template <class F>
-void with_kernel(const Engine& engine, F&& f) {
-  with_laws(engine.laws, [&](const auto& tables) {
-    using T = std::decay_t<decltype(tables)>;
-    if (!engine.one_kind) return f.template operator()<Kernel<T, false, false>>(tables);
-    if (!engine.equal_radii) return f.template operator()<Kernel<T, false, true>>(tables);
-    return f.template operator()<Kernel<T, true, true>>(tables);
-  });
-}
-
-// Adds the forces of section a and of the walls on slab a, and shows their contacts to a watch.
-template <class K, class Tables>
-void act(Engine& engine, const Tables& tables, std::size_t a, Scratch& scratch, const Watch* watch = nullptr) {
-  using AtWalls = WallKernel<Tables, K::one_kind>;
-  Section& section = engine.sections[a];
-  const KernelInput input{engine.constants.data(), engine.images, engine.dt, engine.overlap_ratio};
-  const Batches pairs{section.inner.i.data(), section.inner.j.data(), section.kind.data(), section.history.data(),
-                      section.inner.count};
-  ContactPack* seen = nullptr;
-  if (watch != nullptr) {
-    const std::size_t most = pairs.count / batch + 1 + section.walls.batches.size();
-    if (scratch.packs.size() < most) scratch.packs.resize(most * 5 / 4 + 8);
-    seen = scratch.packs.data();
-  }
-  NoLedger none;
-  std::size_t packs = 0;
-  const double of_pairs = K::act(engine.rows, pairs, tables, input, none, seen, packs);
-  const double of_walls = AtWalls::act(engine.rows, section.walls, engine.walls, tables, input, none, seen, packs);
-  scratch.excess = std::max(scratch.excess, std::max(of_pairs, of_walls));
-  if (watch != nullptr) watch->fast_contacts(engine, a, ContactPacks(seen, packs));
-}
-
-// Steps [from, to) of an epoch; `watch` if the last is looked at.
-template <class K, class Tables>
-void pass(Engine& engine, const Tables& tables, int from, int to, const Watch* watch) {
-  const auto move = [&](int s, int t) {
-    Slab& slab = engine.slabs[static_cast<std::size_t>(s)];
-    const double kick = engine.step + t - from == 0 ? 0.5 * engine.dt : engine.dt;  // the first step closes no other
-    slab.acceleration = move_rows(engine.rows.position.data(), engine.rows.velocity.data(), engine.rows.force.data(),
-                                  slab.begin, slab.moving_end, engine.gravity, kick, engine.dt);
-    slab.drift.step(engine.dt, slab.acceleration);
-    --slab.steps_left;
-  };
-  if (watch != nullptr && !watch->fast_contacts) watch = nullptr;
-  const auto forces = [&](int s, int t) {
-    const auto a = static_cast<std::size_t>(s), b = static_cast<std::size_t>(engine.ring.wrap(s + 1));
-    Section& section = engine.sections[a];
-    Scratch& scratch = engine.scratch[static_cast<std::size_t>(thread_index())];
-    section.mid_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
-    section.inner_valid.step(engine.dt, engine.slabs[a].acceleration, engine.slabs[b].acceleration);
-    if (!section.mid_valid.holds() || !section.inner_valid.holds()) refresh(engine, a, scratch);
-    act<K>(engine, tables, a, scratch, t == to - 1 ? watch : nullptr);
-  };
-  sweep(engine.ring, from, to, engine.grain.size() >= 500, move, forces);
-}
-
-void pass(Engine& engine, int from, int to, const Watch* watch) {
-  with_kernel(engine, [&]<class K>(const auto& tables) { pass<K>(engine, tables, from, to, watch); });
-}
 
 // Whether the outer list is sure to hold for the next epoch.
 bool holds(const Engine& engine, const Slab& slab) {
@@ -239,49 +187,59 @@ void take_steps(Engine& engine, DemState& state, std::int64_t steps, const Watch
     const auto count = static_cast<int>(std::min<std::int64_t>(engine.ring.levels - level, stop - engine.step));
     const bool looked_at = watch.sees(engine.step + count);
     if (looked_at && watch.fast_before) watch.fast_before(engine);
-    pass(engine, level, level + count, looked_at ? &watch : nullptr);
+    (engine.keep_ledger ? pass_with_ledger : pass_without_ledger)(engine, level, level + count,
+                                                                  looked_at ? &watch : nullptr);
+    if (engine.keep_ledger) enter_losses(engine, engine.step + 1, count, state);
     engine.step += count;
     check(engine, state);
     if (looked_at) watch.fast(engine);
   }
 }
 
-// With a new engine if the state has none; whatever happens the state has its grains back.
+// The engine of the state, which has the grains from now on. Whatever goes wrong the state has them back.
 template <class Work>
-void with_engine(DemState& state, const ContactLaws& laws, Work&& work) {
+auto with_engine(DemState& state, const ContactLaws& laws, Work&& work) {
   if (!state.engine.held) state.engine.held = std::make_shared<Engine>();
   Engine& engine = *std::static_pointer_cast<Engine>(state.engine.held);
   try {
     enter(engine, state, laws);
-    work(engine);
+    return work(engine);
   } catch (...) {
     leave(engine, state);
     throw;
   }
-  leave(engine, state);
 }
 
 }  // namespace
 
-void add_forces(Engine& engine) {
-  with_kernel(engine, [&]<class K>(const auto& tables) {
-    for (std::size_t a = 0; a < engine.sections.size(); ++a) act<K>(engine, tables, a, engine.scratch[0]);
-  });
-}
+void add_forces(Engine& engine) { (engine.keep_ledger ? forces_with_ledger : forces_without_ledger)(engine); }
 
 void prepare(DemState& state, const ContactLaws& laws) {
   state.engine = {};
   with_engine(state, laws, [&](Engine& engine) {
     engine.dt = 0;  // springs stay 0
     add_forces(engine);
+    if (engine.keep_ledger) enter_losses(engine, 0, 1, state);
     engine.dt = state.dt;
     state.rebuilds = 1;
     check(engine, state);
   });
+  fast::hand_back(state);
 }
 
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch) {
-  with_engine(state, laws, [&](Engine& engine) { take_steps(engine, state, steps, watch); });
+  with_engine(state, laws, [&](Engine& engine) {
+    take_steps(engine, state, steps, watch);
+    state.step = engine.step;
+  });
+}
+
+Observation observe(DemState& state, const ContactLaws& laws) {
+  return with_engine(state, laws, [&](Engine& engine) { return observe(engine, state); });
+}
+
+void hand_back(DemState& state) {
+  if (state.engine.held) leave(*std::static_pointer_cast<Engine>(state.engine.held), state);
 }
 
 }  // namespace bagnold::dem::fast

@@ -10,9 +10,11 @@
 #include "dem/algorithm.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/fast/kernel.hpp"
+#include "dem/fast/ledger.hpp"
 #include "dem/fast/lists.hpp"
 #include "dem/fast/sweep.hpp"
 #include "dem/fast/walls.hpp"
+#include "dem/observe.hpp"
 #include "dem/state.hpp"
 
 namespace bagnold::dem::fast {
@@ -47,6 +49,7 @@ struct Scratch {
   Aligned<double> history;
   std::vector<std::uint32_t> place;  // by outer pair: where its history was
   std::vector<ContactPack> packs;    // of a section that is looked at
+  OpenedContacts opened;             // of a section, for the ledger
   double excess = 0;
 };
 
@@ -61,10 +64,13 @@ struct Engine {
   bool alike = true;  // the flowing grains: of one size, mass and moment of inertia
   std::size_t history_numbers = 3, constant_numbers = 0;
   std::vector<double> constants;  // of the laws, by pair of species
+  std::vector<double> others;     // the same of laws that may be others
 
   Images images;
   Ring ring;
   Rows rows;
+  bool keep_ledger = false;
+  LedgerRows ledger;
   std::vector<Wall> walls;
   std::vector<std::int32_t> grain;    // of each row; -1 - w: wall w; nobody: neither
   std::vector<std::int32_t> species;  // of each row, if there are several
@@ -77,6 +83,7 @@ struct Engine {
   std::vector<Section> sections;
   std::vector<Scratch> scratch;  // by thread
 
+  bool has_grains() const { return rows.size() > 0; }
   std::size_t rows_beside() const { return 2 + walls.size(); }  // of a slab, no grains
   std::size_t wall_row(const Slab& slab, std::size_t wall) const { return slab.end + 2 + wall; }
 };
@@ -92,12 +99,12 @@ inline std::uint32_t kind_of(const Engine& engine, std::size_t i, std::size_t j)
 // Below this the plain engine is as fast.
 inline constexpr std::int64_t fewest_grains = 64;
 
-// False when the plain engine must do it: an energy ledger kept, a few grains only, or a periodic box only a few grains wide.
+// False when the plain engine must do it: a few grains only, or a periodic box only a few grains wide.
 bool supports(const DemState& state);
 
-// While the engine is at work it holds the grains and their contacts: the arrays x, v, omega, force, torque, `pairs` and
-// `wall_contacts` of the state are empty. enter() takes them, and keeps its lists if the state is the one it left behind; leave() gives
-// them back (nothing if it does not have them).
+// While the engine has the grains it holds them and their contacts: the arrays x, v, omega, force, torque, `pairs` and
+// `wall_contacts` of the state are empty. enter() takes them if the engine does not have them, and keeps its lists if the
+// state is the one it left behind; leave() gives them back (nothing if it does not have them).
 void enter(Engine& engine, DemState& state, const ContactLaws& laws);
 void leave(Engine& engine, DemState& state);
 
@@ -130,8 +137,13 @@ void give_walls(const Engine& engine, DemState& state);
 // As dem::prepare: the forces at t = 0.
 void prepare(DemState& state, const ContactLaws& laws);
 
-// As dem::advance, for a state it supports.
+// As dem::advance_inside and dem::hand_back, for a state it supports.
 void advance(DemState& state, const ContactLaws& laws, std::int64_t steps, const Watch& watch = {});
+void hand_back(DemState& state);
+
+// As dem::observe: with its own engine, or from inside one.
+Observation observe(DemState& state, const ContactLaws& laws);
+Observation observe(Engine& engine, const DemState& state);
 
 // Adds the forces of all pairs of the inner lists to the rows once; springs move on by engine.dt.
 void add_forces(Engine& engine);
@@ -139,7 +151,8 @@ void add_forces(Engine& engine);
 // Makes the outer lists from the places where grains start. `grid`: its layers are the slabs.
 void list_outer(Engine& engine, const Grains& grains, const neighbours::CellGrid& grid, const std::vector<Vec3>& start);
 
-// Makes the lists of a section that no longer hold anew, at the present positions.
+// Makes the lists of a section that no longer hold anew, at the present positions. With a ledger they keep the pairs that
+// touched a step ago, so that their springs are not forgotten before their energy is entered.
 void refresh(Engine& engine, std::size_t section, Scratch& scratch);
 
 // Whether the outer list is sure to hold for the next epoch; measures the excursions of slabs where that is not known.

@@ -166,16 +166,18 @@ std::uint64_t fingerprint(const Grains& g) {
 
 bool supports(const DemState& state) {
   const Grains& g = state.grains;
-  if (state.keep_ledger || g.flowing < fewest_grains) return false;
+  if (g.flowing < fewest_grains) return false;
   for (int k = 0; k < 3; ++k)
     if (state.box.periodic[at(k)] && state.box.length[k] < 2 * (largest_diameter(g) + 2 * skin_of(g))) return false;
   return true;
 }
 
-bool continues(const Engine& engine, const DemState& state, const ContactLaws& laws) {
+namespace {
+
+// Whether everything but the grains is as the engine knows it.
+bool is_known(Engine& engine, const DemState& state, const ContactLaws& laws) {
   if (engine.step != state.step || engine.dt != state.dt || engine.gravity != state.gravity ||
-      engine.overlap_ratio != state.max_overlap_ratio || engine.row.size() != state.grains.x.size() ||
-      state.pairs.origin.empty())
+      engine.overlap_ratio != state.max_overlap_ratio)
     return false;
   for (int k = 0; k < 3; ++k)
     if (engine.box.length[k] != state.box.length[k] || engine.box.periodic[at(k)] != state.box.periodic[at(k)])
@@ -185,16 +187,21 @@ bool continues(const Engine& engine, const DemState& state, const ContactLaws& l
   };
   if (!std::equal(engine.walls.begin(), engine.walls.end(), state.walls.begin(), state.walls.end(), alike))
     return false;
-  const bool same_laws = with_laws(laws, [&](const auto& tables) {
-    std::vector<double> constants;
-    flatten_tables(tables, constants);
-    return constants == engine.constants && tables.species == engine.laws.species &&
+  return with_laws(laws, [&](const auto& tables) {
+    flatten_tables(tables, engine.others);
+    return engine.others == engine.constants && tables.species == engine.laws.species &&
            laws.normal.index() == engine.laws.normal.index() &&
            laws.tangential.index() == engine.laws.tangential.index() &&
            laws.rolling.index() == engine.laws.rolling.index();
   });
-  return same_laws && engine.left_behind == fingerprint(state.grains);
 }
+
+bool has_left(const Engine& engine, const DemState& state) {
+  return !state.pairs.origin.empty() && engine.row.size() == state.grains.x.size() &&
+         engine.left_behind == fingerprint(state.grains);
+}
+
+}  // namespace
 
 void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   Grains& g = state.grains;
@@ -204,6 +211,7 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   engine.gravity = state.gravity;
   engine.dt = state.dt;
   engine.overlap_ratio = state.max_overlap_ratio;
+  engine.keep_ledger = state.keep_ledger;
   engine.skin = skin_of(g);
   engine.cutoff = largest_diameter(g) + engine.skin;
   engine.step = state.step;
@@ -222,6 +230,7 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
   }
   arrange(engine, g, anew ? g.x : remembered_start(state));
   take_grains(engine, g);
+  open_ledger(engine);
   measure(engine);
   engine.scratch.resize(std::max(engine.scratch.size(), at(threads())));
   list_inner(engine, state.pairs);
@@ -233,14 +242,22 @@ void load(Engine& engine, DemState& state, const ContactLaws& laws) {
 }
 
 void enter(Engine& engine, DemState& state, const ContactLaws& laws) {
-  if (!continues(engine, state, laws)) return load(engine, state, laws);
-  state.pairs = {};
-  state.wall_contacts = {};
-  take_grains(engine, state.grains);
+  const bool known = is_known(engine, state, laws);
+  if (!known) leave(engine, state);
+  if (engine.has_grains()) {
+    if (engine.keep_ledger == state.keep_ledger) return;
+  } else {
+    if (!known || !has_left(engine, state)) return load(engine, state, laws);
+    state.pairs = {};
+    state.wall_contacts = {};
+    take_grains(engine, state.grains);
+  }
+  engine.keep_ledger = state.keep_ledger;
+  open_ledger(engine);
 }
 
 void leave(Engine& engine, DemState& state) {
-  if (engine.rows.size() == 0) return;
+  if (!engine.has_grains()) return;
   give_all(engine, state);
   give_origin(engine, state);
   engine.left_behind = fingerprint(state.grains);

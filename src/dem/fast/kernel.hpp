@@ -125,6 +125,12 @@ struct Kernel {
     return size;
   }
 
+  static auto law_of(const Tables& tables, const KernelInput& input, const Batches& pairs, std::size_t place) {
+    return pack_laws(tables, [&](std::size_t c) {
+      return OneKind ? Lanes(input.constants[c]) : gather(input.constants + c, pairs.kind + place);
+    });
+  }
+
   // What the law wants to know of a batch: r, v_ij, omega_i + omega_j, r_i + r_j; if it matters 1/m_i + 1/m_j and
   // r_i - r_j; unless the torques are the same omega_i - omega_j and 1/m_i - 1/m_j.
   static constexpr std::size_t collected = symmetric ? (sized ? 12 : 10) : 16, acted = symmetric ? 6 : 9;

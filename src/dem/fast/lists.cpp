@@ -16,9 +16,12 @@ void Selection::pad(std::size_t lanes, Offset pad_i, Offset pad_j, std::uint32_t
   }
 }
 
-void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin,
+namespace {
+
+template <bool looks_back>
+void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double before, double margin,
             Selection& out) {
-  const Lanes twice_horizon = 2 * horizon, zero = 0.0, extra = margin;
+  const Lanes twice_horizon = 2 * horizon, twice_before = 2 * before, zero = 0.0, extra = margin;
   alignas(32) std::uint32_t key[8];
   out.reserve(from.count);
   // The compiler is told that what is written is nothing that is read, or it would read everything again every time.
@@ -35,7 +38,9 @@ void select(const Rows& rows, const Images& images, const PairSpan& from, double
     const Vec3Of<Lanes> v = difference(velocity, i + p, j + p, 0).xyz;
     const Vec3Of<Lanes> r = fold(box, s.r);
     const Lanes near = s.reach + extra;
-    std::uint32_t bits = to_integer(dot(r, r) + twice_horizon * min(dot(r, v), zero) < near * near);
+    Lanes nearest2 = dot(r, r) + twice_horizon * min(dot(r, v), zero);
+    if constexpr (looks_back) nearest2 -= twice_before * max(dot(r, v), zero);
+    std::uint32_t bits = to_integer(nearest2 < near * near);
     if (pairs - p < 8) bits &= (1u << (pairs - p)) - 1;
     if (from_key == nullptr)
       for (std::uint32_t k = 0; k < 8; ++k) key[k] = static_cast<std::uint32_t>(p) + k;
@@ -44,6 +49,14 @@ void select(const Rows& rows, const Images& images, const PairSpan& from, double
     count += static_cast<std::size_t>(compress(bits, from_key == nullptr ? key : from_key + p, out_key + count));
   }
   out.count = count;
+}
+
+}  // namespace
+
+void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double before, double margin,
+            Selection& out) {
+  before > 0 ? select<true>(rows, images, from, horizon, before, margin, out)
+             : select<false>(rows, images, from, horizon, before, margin, out);
 }
 
 double largest_excursion(const Rows& rows, const std::vector<Vec3>& start, std::size_t begin, std::size_t end,

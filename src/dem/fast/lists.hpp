@@ -78,8 +78,9 @@ struct Selection {
   void pad(std::size_t lanes, Offset pad_i, Offset pad_j, std::uint32_t pad_key);
 };
 
-// The pairs that may come within reach + margin on their straight paths in the time `horizon`.
-void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double margin,
+// The pairs that may come within reach + margin on their straight paths in the time `horizon`, or were so in the time
+// `before` now.
+void select(const Rows& rows, const Images& images, const PairSpan& from, double horizon, double before, double margin,
             Selection& out);
 
 // r folded to the nearest image.

@@ -207,6 +207,7 @@ void rebuild(Engine& engine, DemState& state) {
       if (k >= slab.moving_end) std::fill_n(row, force_doubles, 0.0);  // forces on the base are nobody's business
     });
   }
+  open_ledger(engine);
   measure(engine);
   list_inner(engine, touching);
   remember_walls(engine, at_walls);

@@ -67,8 +67,7 @@ struct WallKernel {
             (height < radius) & lanes_between(0, static_cast<int>(taken))};
   }
 
-  template <class Input>
-  static auto law_of(const Tables& tables, const Input& input, const WallList& list, std::size_t place) {
+  static auto law_of(const Tables& tables, const KernelInput& input, const WallList& list, std::size_t place) {
     return pack_laws(tables, [&](std::size_t c) {
       return OneKind ? Lanes(input.constants[c]) : gather(input.constants + c, &list.kind[place]);
     });

@@ -200,4 +200,18 @@ PairForce<N> interact(const PairLaw<Normal, Tangential, Rolling>& law, const Pai
   return out;
 }
 
+// Energy lost with the springs of a pair that touched a step ago and no longer does: a last stretch, then all is cut.
+template <class N, class Normal, class Tangential, class Rolling>
+N energy_left(const PairLaw<Normal, Tangential, Rolling>& law, const PairGeometry<N>& g, const PairSize<N>& size,
+              const PairHistory<N>& history, N dt) {
+  const NormalResponse<N> normal = law.normal.respond(max(N(0), g.overlap + dt * g.vn), size);
+  const Vec3Of<N> nothing{N(0), N(0), N(0)};
+  N energy =
+      slip_loss(law.tangential.stiffness(normal), history.spring, stretched(history.spring, g.slip, g, dt), nothing);
+  if constexpr (Rolling::active)
+    energy = energy + slip_loss(law.rolling.stiffness(normal, size), history.roll,
+                                stretched(history.roll, g.spin, g, dt), nothing);
+  return energy;
+}
+
 }  // namespace bagnold::laws
