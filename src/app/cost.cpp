@@ -11,6 +11,7 @@
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "core/parallel.hpp"
+#include "core/variant.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 int size_class(double count) { return static_cast<int>(std::floor(std::log2(std::max(1.0, count)))); }
 
 std::string row_of(const Cost& cost, std::string_view model) {
-  return fmt::format("{} {} {}", model, cost.engine, simd_variant());
+  return fmt::format("{} {} {}", model, cost.engine, name(variant()));
 }
 
 nlohmann::json speeds() {

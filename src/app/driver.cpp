@@ -13,6 +13,7 @@
 #include "config/case.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "core/variant.hpp"
 #include "core/version.hpp"
 #include "io/checkpoint.hpp"
 #include "io/csv.hpp"
@@ -92,7 +93,7 @@ class Run {
     summary["status"] = status;
     summary["seed"] = context_.seed;
     summary["threads"] = threads();
-    summary["variant"] = simd_variant();
+    summary["variant"] = name(variant());
     summary["wall_s"] = wall_s_ + seconds_since(segment_);
     summary["cpu_s"] = cpu_s_ + cpu_seconds() - segment_cpu_;
     summary["steps"] = model_.step();

@@ -43,7 +43,6 @@ TEST(FastLedger, IsThatOfThePlainEngine) {
   for (const Mixture& mixture : mixtures()) {
     DemState fast = shaken(mixture, 1e-4), plain = fast;
     ASSERT_TRUE(fast::supports(fast));
-    plain.pairs.origin = {};
     for (const int steps : {1, 60, 239}) {
       advance(fast, mixture.laws, steps);
       advance_plain(plain, mixture.laws, steps);
