@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
   if (threads() < 2) return fmt::print("one processor only: nothing to compare\n"), 0;
   if (only != "busy") small_loops();
   config::Case input = config::Case::from_file(BAGNOLD_CASES "/demo.toml");
-  const app::DemInput demo = app::read_dem(input);
+  const app::DemInput demo = app::build_dem(app::read_dem(input));
   dem::DemState flow = demo.state;
   advance(flow, demo.laws, 30'000);  // it flows
   fmt::print("the flow of cases/demo.toml, {} grains:\n", flow.grains.flowing);

@@ -17,7 +17,7 @@ using testing::Mixture;
 using testing::mixtures;
 
 DemState over_a_plane(const Mixture& mixture, std::int64_t per_side = 6) {
-  DemState s = testing::random_packing(per_side, 0.99 - 0.45 * mixture.size_spread, 9, mixture.size_spread);
+  DemState s = testing::random_packing(per_side, 0.99 - 0.2 * mixture.size_spread, 9, mixture.size_spread);
   for (std::size_t i = 0; i < s.grains.x.size(); ++i)
     s.grains.species[i] = static_cast<std::int32_t>(i) % mixture.species;
   s.grains.flowing -= per_side;

@@ -86,10 +86,13 @@ TEST_P(StepLimits, IsTheShortestOfAllPairsThatCanMeet) {
 }
 
 TEST_P(StepLimits, EqualGrainsStepByAFiftiethOfTheirCollision) {
-  if (is("Soggy") || is("StiffAlong")) GTEST_SKIP() << "these follow the dashpot and the tangential spring";
   DemState s;
   for (int i = 0; i < 7; ++i) add_grain(s, {2.0 * i, 0, 0}, {}, {}, 1 + spread());
-  EXPECT_EQ(step_limit(s, model()).step, contact_types(s, model())[0].tc / 50);
+  const double step = step_limit(s, model()).step, fiftieth = contact_types(s, model())[0].tc / 50;
+  if (is("Soggy") || is("StiffAlong"))
+    EXPECT_LE(step, fiftieth);  // these follow the dashpot and the tangential spring
+  else
+    EXPECT_EQ(step, fiftieth);
 }
 
 // Two of the smallest grains meet, obliquely and spinning; energies before and after.
