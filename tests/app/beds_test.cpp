@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(ForeignBeds, AreRefusedAndReplaced) {
   ASSERT_EQ(run("run c.toml -o a --quiet").exit_code, 0);
   const fs::path bed = files()[0];
-  ASSERT_EQ(run("run c.toml -o other --quiet --set seed=4", "other").exit_code, 0);
+  ASSERT_EQ(run("run c.toml -o of-seed-4 --quiet --set seed=4", "other").exit_code, 0);
   GetParam().put(bed, files("other")[0]);
   const Outcome again = run("run c.toml -o b");
   ASSERT_EQ(again.exit_code, 0) << again.err;
@@ -189,13 +189,13 @@ TEST_F(Beds, AreNotSettledForWhatIsRefused) {
 TEST_F(Beds, CanBeInterruptedWhileTheySettle) {
   const std::string cache = " XDG_CACHE_HOME='" + (scratch / "cache").string() + "'";
   for (const char* signal : {"TERM", "INT"}) {
-    const Outcome outcome = bagnold(
-        scratch,
-        std::string(
-            "run c.toml -o a --set scenario.width=12 --set scenario.length=12 & pid=$!; while kill -0 $pid && ! "
-            "grep -q settling stderr.txt; do sleep 0.02; done; kill -") +
-            signal + " $pid; wait $pid; exit $? #",
-        cache);
+    const std::string err = (scratch / "stderr.txt").string();
+    const Outcome outcome =
+        bagnold(scratch,
+                "run c.toml -o a --set scenario.width=12 --set scenario.length=12 >stdout.txt 2>stderr.txt & pid=$!; "
+                "while kill -0 $pid && ! grep -q settling " +
+                    err + "; do sleep 0.02; done 2>/dev/null; kill -" + signal + " $pid; wait $pid; exit $? #",
+                cache);
     EXPECT_EQ(outcome.exit_code, 75) << outcome.err;
     EXPECT_NE(outcome.err.find("no run was begun"), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(scratch / "a"));
