@@ -173,6 +173,7 @@ void advance(Model& model, Run& run, Progress& progress, const RunContext& conte
   while (model.time() < until * (1 - 1e-12) && !model.ended() && !stop_requested()) {
     const auto begin = Clock::now();
     const double from = model.time();
+    if (!(from + piece > from * (1 + 1e-11))) piece = until - from;  // as after a cut at the moment of an output
     model.advance(std::min(until, from + piece));
     const double took = std::max(1e-9, seconds_since(begin));
     const double longer = std::max(model.time() - from, 1e-300) * std::clamp(piece_s / took, 0.5, 2.0);
