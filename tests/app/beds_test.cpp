@@ -216,8 +216,9 @@ TEST_F(Beds, AreNotNeededToResume) {
 }
 
 TEST_F(Beds, MayBeSettledByTwoAtOnce) {
-  const Outcome both =
-      run("run c.toml -o a --quiet & " BAGNOLD_PROGRAM " run c.toml -o b --quiet; other=$?; wait $! && exit $other #");
+  const std::string here = scratch.path().string();
+  const Outcome both = run("run c.toml -o a --quiet & cd '" + here + "' && XDG_CACHE_HOME='" + here +
+                           "/cache' '" BAGNOLD_PROGRAM "' run c.toml -o b --quiet; other=$?; wait $! && exit $other #");
   ASSERT_EQ(both.exit_code, 0) << both.err;
   expect_same_state(scratch / "a", scratch / "b");
   ASSERT_EQ(files().size(), 1U);
