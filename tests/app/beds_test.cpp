@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
                             },
                             "a bed of format 0"},
                     Foreign{"NoBedAtAll", [](const fs::path& bed, const fs::path&) { write_text(bed, "not a bed"); },
-                            "cannot"}),
+                            "not a readable HDF5 file"}),
     [](const auto& p) { return std::string(p.param.name); });
 
 TEST_P(ForeignBeds, AreRefusedAndReplaced) {
