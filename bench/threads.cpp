@@ -4,8 +4,8 @@
 //
 //   bench_threads [quiet | busy]   one of both only
 //
-// The fair share: a scheduler that treats all alike gives n threads beside m loops on c processors n c/(n + m) of them. Wall
-// time is compared with the CPU time of one thread over that, for one thread and for two.
+// The fair share: a scheduler that treats all alike gives n threads beside m loops on c processors n c/(n + m) of them.
+// Wall time is compared with the CPU time of one thread over that, for one thread and for two.
 #include <fmt/core.h>
 #include <signal.h>
 #include <sys/prctl.h>

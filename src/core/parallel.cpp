@@ -143,10 +143,9 @@ void take_part(Team& t, int me) {
   }
 }
 
-void serve(Team& t, int me) {
+void serve(Team& t, Seat& seat, int me) {
   my_index = me;
   inside = true;
-  Seat& seat = *t.seats[static_cast<std::size_t>(me)];
   while (true) {
     if (!spin([&] { return seat.state.load(std::memory_order_relaxed) == posted; })) {
       std::uint32_t expected = idle;
@@ -168,7 +167,7 @@ bool start(Team& t, int k) {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   try {
-    std::thread(serve, std::ref(t), k).detach();
+    std::thread(serve, std::ref(t), std::ref(seat), k).detach();
     seat.started = true;
   } catch (const std::system_error&) {
   }

@@ -13,8 +13,8 @@
 
 namespace bagnold {
 
-// The wish: `count`, or if that is 0 OMP_NUM_THREADS, else SLURM_CPUS_PER_TASK, else as many as allowed. Never more than
-// the affinity mask and the CPU quota allow. Returns a note for the user if a wish had to be reduced, else nothing.
+// The wish: `count`, or if that is 0 OMP_NUM_THREADS, else SLURM_CPUS_PER_TASK, else as many as allowed. Never more
+// than the affinity mask and the CPU quota allow. Returns a note for the user if a wish had to be reduced, else nothing.
 std::string set_threads(int count);
 // Exactly so many, allowed or not, all of them used in every loop: for tests.
 void force_threads(int count);
@@ -52,8 +52,9 @@ class PerThread {
   std::vector<std::shared_ptr<void>> objects_;
 };
 
-// body(context, begin, end) over parts of [0, n), each item exactly once. What an item throws reaches the caller, once all
-// other items are done: the exception of the first item that threw. Loops within items stay on their thread.
+// body(context, begin, end) over parts of [0, n), each item exactly once. What an item throws reaches the caller when
+// nobody works any more: the exception of the first item that threw; which of the items after it were done is left open.
+// Loops within items stay on their thread.
 using RangeBody = void (*)(void* context, std::int64_t begin, std::int64_t end);
 void run_items(std::int64_t n, RangeBody body, void* context);
 

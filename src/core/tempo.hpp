@@ -4,11 +4,12 @@
 
 namespace bagnold {
 
-// More threads may not help: a thread that the system has put aside in the middle of its part holds up all others, small
-// parts wait for each other's memory, two processors may be one. So it is tried: loops, with what lies between them, are
-// taken together in windows, and now and then one window is left to half the team or to twice the team, and the next one
-// to the team again. The larger size has to be faster by `gain`, or the smaller one stays. The longer a size stands the
-// more seldom others are tried; loops of kinds not met before are reason to try again. Results do not depend on the size.
+// More threads may not help: a thread that the system has put aside in the middle of its part holds up all others,
+// small parts wait for each other's memory, two processors may be one. So it is tried. Loops, with what lies between
+// them, are taken together in windows. Now and then one window is left to half the team or to twice the team, and the
+// next one to the team again. The larger size has to be faster by `gain`, or the smaller one stays. The longer a size
+// stands the more seldom others are tried; loops of kinds not met before are reason to try again. Results do not depend
+// on the size.
 struct Tempo {
   static constexpr double window_ns = 30e6;  // several turns of the scheduler
   static constexpr double pause_ns = 1e6;    // what is longer between loops is something else: files, another phase
